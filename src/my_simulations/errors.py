@@ -25,8 +25,6 @@ _ONE_PER_MODEL = {"inertia-zero", "inertia-not-positive", "inertia-impossible"}
 
 
 class Severity(enum.Enum):
-    """Severity of an issue."""
-
     ERROR = "error"      # the element (or the file) is not usable
     WARNING = "warning"  # used, but not as written
     NOTE = "note"        # used as written, worth knowing

@@ -54,7 +54,6 @@ class Scene:
         return robot
 
     def box(self, size: Sequence[float], mass: float, place: Sequence[float]) -> int:
-        """Add a box."""
         shape = pybullet.createCollisionShape(
             pybullet.GEOM_BOX, halfExtents=[edge / 2 for edge in size], **self.at)
         body: int = pybullet.createMultiBody(mass, shape, -1, place, **self.at)
@@ -62,7 +61,6 @@ class Scene:
 
     def drive(self, robot: int, names: Sequence[str], rates: Sequence[float], effort: float,
               ) -> None:
-        """Drive joints at rates."""
         pybullet.setJointMotorControlArray(
             robot, [self.joints[name] for name in names], pybullet.VELOCITY_CONTROL,
             targetVelocities=list(rates), forces=[effort] * len(names), **self.at)
@@ -73,7 +71,6 @@ class Scene:
                 *pybullet.getBaseVelocity(body, **self.at))
 
     def make_steps(self) -> None:
-        """Make the steps of a step of the task."""
         for _ in range(self.steps):
             pybullet.stepSimulation(**self.at)
 

@@ -17,6 +17,5 @@ def begin(step_size: float) -> None:
 
 
 def steps(count: int) -> None:
-    """Make steps."""
     for _ in range(count):
         pybullet.stepSimulation()

@@ -34,5 +34,4 @@ class Clock:
         return (self.sim - sim) / (time.perf_counter() - since)
 
     def close(self) -> None:
-        """Unsubscribe from the clock."""
         self._subscriber.unregister()

@@ -127,7 +127,6 @@ def _seconds(command: List[str]) -> float:
 
 
 def ratio(pairs: Pairs) -> float:
-    """The median of the pairs' ratios."""
     return statistics.median(mine / bare for mine, bare in pairs)
 
 

@@ -43,7 +43,6 @@ class Words:
         self.crashes: List[str] = []
 
     def __call__(self, issue: Issue) -> None:
-        """Hear an issue."""
         self.heard()
         self.errors += issue.severity is Severity.ERROR
         if issue.code in ("engine-died", "engine-lost", "engine-stalled"):

@@ -63,7 +63,6 @@ class Case(PluginCase):
 
 
 def numbers(message):
-    """All floats in a message."""
     found = []
     for value in vars(message).values():
         if isinstance(value, float):

@@ -610,7 +610,6 @@ def test_distortion_moves_points_as_browns_model_says(view, k1):
 
 
 def centroid(x, y):
-    """Of a polygon."""
     following_x, following_y = np.roll(x, -1), np.roll(y, -1)
     cross = x * following_y - following_x * y
     return (((x + following_x) * cross).sum() / (3 * cross.sum()),

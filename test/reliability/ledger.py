@@ -55,7 +55,6 @@ class Client(threading.Thread):
         self._stopping = threading.Event()
 
     def run(self) -> None:
-        """Work."""
         operations: List[Callable[[], None]] = [
             self._spawn, self._spawn, self._delete, self._move, self._move, self._read, self._step]
         while not self._stopping.is_set():
@@ -150,7 +149,6 @@ class Saver(threading.Thread):
         self._stopping = threading.Event()
 
     def run(self) -> None:
-        """Work."""
         while not self._stopping.wait(0.2):
             try:
                 world = present_world(self._sim)
@@ -209,7 +207,6 @@ class Crew:
         assert [wrong for worker in workers for wrong in worker.wrong] == []
 
     def figures(self) -> Dict[str, int]:
-        """For the record."""
         return {"clients": len(self._clients), "models": self.models, "operations": self.done,
                 "refused": sum(client.refused for client in self._clients),
                 "saves": self._saver.saves, "lost": 0, "wrong": 0}
@@ -241,5 +238,4 @@ def descriptors(pid: int) -> int:
 
 
 def threads(pid: int) -> int:
-    """Threads of a process."""
     return len(os.listdir(f"/proc/{pid}/task"))

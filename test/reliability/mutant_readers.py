@@ -146,7 +146,6 @@ def sdf(_folder: Path) -> Target:
 
 
 def urdf(_folder: Path) -> Target:
-    """Robots."""
     return documents("URDF", ("robot",), (".urdf",), {
         **URDF, "robot": ["link", "joint", "material", "gazebo", "transmission"]})
 
@@ -210,7 +209,6 @@ def _trees(suffix: str, wanted: Callable[[Any], bool]) -> Iterator[Any]:
 
 
 def object_lists(folder: Path) -> Target:
-    """Object lists."""
     def read(path: str) -> List[Issue]:
         tree, source, issues = read_yaml(path, "/objects")
         return issues + parse_objects(tree, source).issues()
@@ -226,7 +224,6 @@ def object_lists(folder: Path) -> Target:
 
 
 def study_files(folder: Path) -> Target:
-    """Study files."""
     found = list(_trees(".yaml", lambda tree: "duration" in tree or "scenarios" in tree))
     assert found
     return yaml_files("study files", found, folder / "study.yaml",
@@ -234,7 +231,6 @@ def study_files(folder: Path) -> Target:
 
 
 def plans(_folder: Path) -> Target:
-    """Plans of buildings."""
     plan = json.loads(json.dumps(plan_to_json(two_rooms())))
     known = TreeKnowledge()
     known.learn(plan)

@@ -88,7 +88,6 @@ class Run:
     per_second: int = 0
 
     def figures(self) -> Dict[str, Any]:
-        """For the record."""
         return {"inputs": self.inputs, "per_second": self.per_second,
                 "slowest_ms": round(1000 * self.slowest), "kinds_of_answers": self.features,
                 "growth_percent": round(100 * self.growth, 1),

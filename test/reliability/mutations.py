@@ -195,7 +195,6 @@ _ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", '"': "&quot;"})
 
 
 def xml_text(root: Element) -> str:
-    """As a document."""
     out: List[str] = []
     _write(root, out.append)
     return "".join(out)

@@ -9,7 +9,6 @@ import support
 
 
 def package_file(inside):
-    """A file of this package."""
     return os.path.join(rospkg.RosPack().get_path(support.PACKAGE), *inside.split("/"))
 
 

@@ -143,7 +143,6 @@ class OwnWorlds(unittest.TestCase):
 
 
 def support_folder():
-    """The folder of this package."""
     import rospkg
 
     return rospkg.RosPack().get_path(support.PACKAGE)

@@ -130,7 +130,6 @@ def box(size=0.2, mass=1.0, link="body", extra="", attributes=""):
 
 
 def static_box_sdf(own_pose="0 0 0 0 0 0"):
-    """An SDF document with a static box."""
     return ('<sdf version="1.6"><model name="block"><static>true</static>'
             f"<pose>{own_pose}</pose>"
             '<link name="body"><collision name="c"><geometry><box><size>1 1 1</size></box>'

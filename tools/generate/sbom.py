@@ -34,7 +34,6 @@ def component(kind: str, name: str, version: str, licence: str = "") -> Dict[str
 
 
 def python_packages(python: str) -> Iterator[Dict[str, Any]]:
-    """Of an environment."""
     done = subprocess.run([python, "-c", LIST], check=True, capture_output=True, text=True)
     unique = {name.lower(): (name, version, licence)
               for name, version, licence in json.loads(done.stdout) if name}
@@ -69,7 +68,6 @@ def page_packages() -> Iterator[Dict[str, Any]]:
 
 
 def document(python: str) -> Dict[str, Any]:
-    """The whole document."""
     return {"bomFormat": "CycloneDX", "specVersion": "1.5", "version": 1, "components": [
         *python_packages(python), *page_packages(), *system_packages()]}
 

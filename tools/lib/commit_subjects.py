@@ -22,8 +22,6 @@ REVERT = re.compile(r'^Revert "')
 
 
 class Commit(NamedTuple):
-    """One commit."""
-
     short: str
     committed: int
     subject: str

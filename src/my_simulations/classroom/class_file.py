@@ -32,8 +32,6 @@ def read_class(file: str) -> Tuple[ClassPlan, List[Issue]]:
 
 
 class _ClassReader(ValueReader):
-    """Reads a class."""
-
     document = "class file"
 
     def fault(self, path: Sequence[str], message: str, hint: str = "",

@@ -77,7 +77,6 @@ class Robot:
         self._command.publish(message)
 
     def stop(self) -> None:
-        """Stand."""
         self.drive(0.0)
 
     def come_to_rest(self) -> None:

@@ -7,8 +7,6 @@ from ..geometry import Pose
 
 
 class ListedTopic(Protocol):
-    """A topic of the graph."""
-
     @property
     def name(self) -> str:
         """As resolved, with a leading slash."""
@@ -43,8 +41,6 @@ class ListedTopic(Protocol):
 
 
 class Subscription(Protocol):
-    """A subscription to a topic."""
-
     @property
     def received_bytes(self) -> int:
         """Bytes that have come so far, of all publishers."""

@@ -30,5 +30,4 @@ def axis_rows(model: Model) -> List[AxisRow]:
 
 
 def row_name(joint: str, number: int) -> str:
-    """Name of a joint axis."""
     return f"{joint}::{number}" if number else joint

@@ -291,8 +291,6 @@ def _module(name: str) -> Optional[ModuleSpec]:
 
 
 class AssignmentValues(ValueReader):
-    """Reads values of an assignment."""
-
     document = "assignment"
 
     def fault(self, path: Sequence[str], message: str, hint: str = "",

@@ -64,7 +64,6 @@ class Account:
 
 
 def submission_account(scratch: str, slot: int) -> Account:
-    """The user of the submission."""
     submission, home, temporary, judge, tests = (
         os.path.join(scratch, name) for name in ("submission", "home", "tmp", "judge", TESTS))
     return Account(_FIRST_USER + slot, home, temporary, (submission, home, temporary),

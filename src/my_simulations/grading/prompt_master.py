@@ -63,7 +63,6 @@ class PromptThreadPool(rosmaster.threadpool.MarkedThreadPool):   # type: ignore[
         self._notify()
 
     def get_next_task(self) -> Any:
-        """Wait for the next task."""
         with self._changed:
             while True:
                 found = super().get_next_task()

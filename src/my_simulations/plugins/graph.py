@@ -43,8 +43,6 @@ class ServiceTakenError(SimulationError):
 
 
 class Topic(Protocol):
-    """A topic that is published."""
-
     @property
     def wanted(self) -> bool:
         """Whether the topic has a subscriber."""

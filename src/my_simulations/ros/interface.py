@@ -195,7 +195,6 @@ def row_of(name: str, direction: Direction) -> Row:
 
 
 def interface_tables() -> str:
-    """The tables for the documentation."""
     lines: List[str] = []
     for direction, head in ((PUBLISHES, "Published topics"),
                             (SUBSCRIBES, "Subscribed topics"), (SERVES, "Services")):

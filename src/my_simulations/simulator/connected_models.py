@@ -98,7 +98,6 @@ class ConnectedModels(KnownModels):
             self._links = self._links.with_joint(wanted, name)
 
     def attachments(self, name: str) -> List[Joint]:
-        """Return the joints between models of that name."""
         return self._links.joint(name)
 
     def detach(self, name: str) -> bool:

@@ -33,8 +33,6 @@ def read_study(file: str) -> Tuple[Study, List[Issue]]:
 
 
 class StudyReader(ValueReader):
-    """Reads a study."""
-
     def study(self, tree: Any, file: str) -> Optional[Study]:
         """The study; None if it is not a mapping at all."""
         if not isinstance(tree, Mapping):

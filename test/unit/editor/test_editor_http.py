@@ -58,7 +58,6 @@ def test_the_page_comes_with_careful_headers(case):
 
 
 def page_folder(tmp_path):
-    """A page of one module."""
     folder = tmp_path / "page"
     (folder / "js").mkdir(parents=True)
     (folder / "js" / "main.js").write_text("one();")

@@ -52,13 +52,11 @@ class Service:
             stream.flush()
 
     def end(self) -> None:
-        """Wait for its end."""
         self._thread.join(60.0)
         self._listener.close()
 
 
 def header(**fields: str) -> bytes:
-    """A TCPROS header."""
     parts = [f"{key}={value}".encode() for key, value in fields.items()]
     body = b"".join(LENGTH.pack(len(part)) + part for part in parts)
     return LENGTH.pack(len(body)) + body

@@ -26,5 +26,4 @@ def one_wall(*openings, length=4.0, **changes):
 
 
 def link(model, name):
-    """A link of a model, by name."""
     return next(found for found in model.links if found.name == name)

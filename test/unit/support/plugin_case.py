@@ -35,7 +35,6 @@ class PluginCase:
         until(lambda: not self.host.has_pending_input)
 
     def ask(self, service, **fields):
-        """The response of a service."""
         response = Message()
         self.graph.heard[service](Message(**fields), response)
         return response

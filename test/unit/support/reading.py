@@ -19,7 +19,6 @@ URDF_INERTIAL = ('<inertial><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" 
 
 
 def sdf(inside, version="1.6"):
-    """An SDF document."""
     return f'<sdf version="{version}">{inside}</sdf>'
 
 
@@ -29,7 +28,6 @@ def model_of(inside, version="1.6", resolver=None):
 
 
 def link_of(inside, version="1.6"):
-    """The one link of a model."""
     model, issues = model_of(f'<link name="l">{inside}</link>', version)
     return model.links[0], issues
 
@@ -46,17 +44,14 @@ def world_of(inside, version="1.6", resolver=None):
 
 
 def codes(issues, severity=None):
-    """Codes of the issues, of one severity or of all."""
     return [i.code for i in issues if severity is None or i.severity is severity]
 
 
 def errors(issues):
-    """Codes of the errors."""
     return codes(issues, Severity.ERROR)
 
 
 def warnings(issues):
-    """Codes of the warnings."""
     return codes(issues, Severity.WARNING)
 
 
@@ -75,11 +70,9 @@ def refusal(function, *arguments):
 
 
 def robot_link(name, inside=URDF_INERTIAL):
-    """A URDF link."""
     return f'<link name="{name}">{inside}</link>'
 
 
 def robot_joint(name, parent, child, kind="fixed", inside="", xyz="0 0 0", rpy="0 0 0"):
-    """A URDF joint."""
     return (f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
             f'<origin xyz="{xyz}" rpy="{rpy}"/>{inside}</joint>')

@@ -10,7 +10,6 @@ from .model import Model
 
 
 def models() -> Iterator[Model]:
-    """All models of this module."""
     yield from (
         sofa(),
         armchair(),

@@ -12,7 +12,6 @@ from .model import Model
 
 
 def models() -> Iterator[Model]:
-    """All models of this module."""
     yield from (
         refrigerator(),
         stove(),

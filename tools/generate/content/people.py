@@ -14,7 +14,6 @@ KNEE, ANKLE = 0.48, 0.07
 
 
 def models() -> Iterator[Model]:
-    """All models of this module."""
     yield from (standing(), walking(), sitting(), worker(), child())
 
 
@@ -64,7 +63,6 @@ def leg(hip: Vec3, knee: Vec3, ankle: Vec3) -> Mesh:
 
 
 def shoe(ankle: Vec3, pitch: float = 0.0) -> Mesh:
-    """A shoe below an ankle."""
     return block((0.27, 0.095, 0.085), (0.055, 0, -0.028), 0.035).turned(0, pitch).moved(*ankle)
 
 

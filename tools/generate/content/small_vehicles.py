@@ -12,7 +12,6 @@ from .vehicles import wheel
 
 
 def models() -> Iterator[Model]:
-    """All models of this module."""
     yield from (bicycle(), kick_scooter(), pallet_truck(), hand_cart(), wheelchair())
 
 

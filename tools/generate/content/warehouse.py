@@ -10,7 +10,6 @@ from .model import Model
 
 
 def models() -> Iterator[Model]:
-    """All models of this module."""
     yield from (
         pallet(),
         loaded_pallet(),
@@ -48,7 +47,6 @@ def pallet() -> Model:
 
 
 def carton(model: Model, size: tuple, at: tuple) -> None:
-    """A taped carton."""
     x, y, z = size
     model.look("cardboard", block(size, at, 0.006))
     model.look("cream", block((0.05, y + 0.002, z + 0.002), at, 0.001))

@@ -109,8 +109,6 @@ class TopicChannel:
 
 
 class _RecordedTopic:
-    """A topic that is recorded."""
-
     def __init__(self, source: TopicSource, topic: ListedTopic, now: Callable[[], float]) -> None:
         self._name = topic.name
         self._viewer = Viewer(topic.kind, now)

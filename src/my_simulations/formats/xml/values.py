@@ -16,8 +16,6 @@ UNSET = "__default__"
 
 
 class Kind(Protocol):
-    """A kind of value."""
-
     def parse(self, text: str) -> Any:
         """The value of `text`. Raises ValueError."""
 

@@ -17,8 +17,6 @@ _REACHED = 0.01  # m/s: a wheel that is so near to its speed has it (gazebo_plug
 
 
 class DiffDrive(OdometryDrive):
-    """A differential drive."""
-
     def load(self) -> None:
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, context.model))

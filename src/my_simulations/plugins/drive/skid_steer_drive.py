@@ -14,8 +14,6 @@ _CORNERS = ("leftFront", "rightFront", "leftRear", "rightRear")
 
 
 class SkidSteerDrive(Plugin):
-    """A skid-steered drive."""
-
     def load(self) -> None:
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))

@@ -25,8 +25,6 @@ class RemoteHandle:
 
 
 class RemoteLink(RemoteHandle):
-    """A link."""
-
     def __init__(self, connection: Connection, made: HandleMade) -> None:
         super().__init__(connection, made)
         self.name, self.inertial = made.facts["name"], made.facts["inertial"]
@@ -44,8 +42,6 @@ class RemoteLink(RemoteHandle):
 
 
 class RemoteJoint(RemoteHandle):
-    """A joint axis."""
-
     def __init__(self, connection: Connection, made: HandleMade) -> None:
         super().__init__(connection, made)
         self.name, self.spec = made.facts["name"], made.facts["spec"]

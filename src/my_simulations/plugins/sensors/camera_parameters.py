@@ -38,7 +38,6 @@ class CameraTopics:
     frame: str
 
     def named(self, name: str) -> str:
-        """A further topic of the camera."""
         return name if name.startswith("/") or not self.base else f"{self.base}/{name}"
 
 

@@ -78,8 +78,6 @@ _KINDS: Dict[str, Type[Plugin]] = {
 
 
 class RaySensor(Plugin):
-    """One of the four."""
-
     def load(self) -> None:
         """Choose by `<outputType>`; PointCloud2 by default."""
         p = self.context.parameters

@@ -20,8 +20,6 @@ _PROGRESS = ("meshes", "model-download")
 
 
 class RunningEditor(Protocol):
-    """Interface of a running editor."""
-
     public_url: str
 
     def stop(self, reason: str = "") -> None:
