@@ -8,6 +8,7 @@ import time
 import pytest
 from conftest import ground
 from inline_engine import InlineEngine
+from planar_pose import planar_pose
 from plugin_graph import Graph
 
 from my_simulations.description.world import World
@@ -55,9 +56,7 @@ class Drive:
         while not self.graph.on("/odom") or self.graph.on("/odom")[-1].header.stamp < wanted:
             assert time.monotonic() < deadline
             time.sleep(0.001)
-        pose = self.graph.on("/odom")[-1].pose.pose
-        return pose.position.x, pose.position.y, 2.0 * math.atan2(pose.orientation.z,
-                                                                  pose.orientation.w)
+        return planar_pose(self.graph.on("/odom")[-1].pose.pose)
 
     def truth(self):
         pose, _ = self.sim.states.model_state("robo")

@@ -5,6 +5,7 @@ from my_simulations.description.model import Joint, JointAxis, Link, Model
 from my_simulations.description.transmission import Actuator, Transmission, TransmissionJoint
 from my_simulations.geometry import Pose
 from my_simulations.messages import Duration
+from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.control.gazebo_ros_control import GazeboRosControl
 from my_simulations.plugins.testing import FakeContext, Message
 
@@ -122,3 +123,15 @@ class Client:
 
 def tolerance(name, position=0.0, velocity=0.0):
     return Message(name=name, position=position, velocity=velocity, acceleration=0.0)
+
+
+def hide_package(context, package):
+    """Let the messages of a package be absent from what a plugin publishes."""
+    publish = context.publish
+
+    def publish_known(name, kind, *more):
+        if kind.startswith(package):
+            raise PluginError(f"{kind} is not there")
+        return publish(name, kind, *more)
+
+    context.publish = publish_known

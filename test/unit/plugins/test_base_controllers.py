@@ -4,7 +4,8 @@ from __future__ import annotations
 import math
 
 import pytest
-from robot_control import Arm
+from planar_pose import planar_pose
+from robot_control import Arm, hide_package
 
 from my_simulations.description.model import JointAxis
 from my_simulations.description.sensor import ForceTorque, Imu, Sensor
@@ -21,12 +22,6 @@ EFFORT = "hardware_interface/EffortJointInterface"
 VELOCITY = "hardware_interface/VelocityJointInterface"
 POSITION = "hardware_interface/PositionJointInterface"
 FREE = JointAxis((0.0, 1.0, 0.0))
-
-
-def pose_of(message):
-    pose = message.pose.pose
-    return (pose.position.x, pose.position.y,
-            2.0 * math.atan2(pose.orientation.z, pose.orientation.w))
 
 
 def go(robot, seconds, x=0.0, y=0.0, yaw=0.0):
@@ -51,7 +46,7 @@ def test_a_steered_axle_makes_a_circle_of_its_wheel_base():
     go(robot, 2.0, x=0.5, yaw=0.4)
     assert robot.context.joints["rear"].velocity == pytest.approx(5.0)
     assert robot.at("steer") == pytest.approx(0.4, abs=1e-6)
-    x, y, yaw = pose_of(robot.published("drive/odom")[-1])
+    x, y, yaw = planar_pose(robot.published("drive/odom")[-1].pose.pose)
     radius = 1.0 / math.tan(0.4)            # the joints are 1 m apart
     assert yaw == pytest.approx(0.5 * 2.0 / radius, rel=0.02)
     assert (x, y) == pytest.approx((radius * math.sin(yaw), radius * (1.0 - math.cos(yaw))),
@@ -72,7 +67,8 @@ def test_without_feedback_the_odometry_is_that_of_the_commands():
     robot = car(open_loop=True)
     robot.context.joints["rear"].stuck = True
     go(robot, 1.0, x=0.5)
-    assert pose_of(robot.published("drive/odom")[-1]) == pytest.approx((0.5, 0.0, 0.0), abs=0.02)
+    assert planar_pose(robot.published("drive/odom")[-1].pose.pose) == pytest.approx(
+        (0.5, 0.0, 0.0), abs=0.02)
 
 
 WHEELS = ("front_left", "front_right", "rear_left", "rear_right")
@@ -115,9 +111,9 @@ def test_all_wheels_stand_across_the_lines_to_the_centre_of_the_turn():
 def test_a_turn_on_four_steered_wheels_closes_in_the_odometry():
     robot = four_wheels()
     go(robot, 2.0, x=1.0, yaw=0.5)
-    first = pose_of(robot.published("drive/odom")[-1])
+    first = planar_pose(robot.published("drive/odom")[-1].pose.pose)
     go(robot, 2.0, x=1.0, yaw=0.5)
-    x, y, yaw = pose_of(robot.published("drive/odom")[-1])
+    x, y, yaw = planar_pose(robot.published("drive/odom")[-1].pose.pose)
     turn = yaw - first[2]
     assert turn == pytest.approx(1.0, abs=1e-3)
     assert math.hypot(x - first[0], y - first[1]) == pytest.approx(4.0 * math.sin(turn / 2.0),
@@ -296,14 +292,7 @@ def test_a_robot_without_such_sensors_is_told(kind):
 
 def test_messages_that_are_not_installed_leave_the_rest_working():
     robot = four_wheels()
-    publish = robot.context.publish
-
-    def missing(name, kind, *more):
-        if kind.startswith("four_wheel_steering_msgs"):
-            raise PluginError(f"{kind} is not there")
-        return publish(name, kind, *more)
-
-    robot.context.publish = missing
+    hide_package(robot.context, "four_wheel_steering_msgs")
     assert robot.switch((), ["drive"])
     assert robot.ask("unload_controller", name="drive").ok
     robot.run("drive")

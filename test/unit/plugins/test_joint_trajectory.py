@@ -17,6 +17,9 @@ EFFORT = {"type": "effort_controllers/JointTrajectoryController", "joints": list
           "gains": {name: EFFORT_LOOP for name in NAMES}}
 
 
+SLOW = JointAxis((0.0, 0.0, 1.0), lower=-3.0, upper=3.0, effort=100.0, velocity=0.5)
+
+
 def arm_with(settings=None, **options):
     arm = Arm(arm={**POSITION, **(settings or {})}, **options)
     arm.run("arm")
@@ -95,8 +98,7 @@ def test_feedback_tells_desired_actual_and_error():
 
 
 def test_a_path_that_cannot_be_followed_ends_the_goal_with_joint_and_error():
-    slow = JointAxis((0.0, 0.0, 1.0), lower=-3.0, upper=3.0, effort=100.0, velocity=0.5)
-    arm, client = arm_with({"constraints": {"one": {"trajectory": 0.1}}}, axis=slow)
+    arm, client = arm_with({"constraints": {"one": {"trajectory": 0.1}}}, axis=SLOW)
     goal = client.send(trajectory(NAMES, (1.0, (2.0, 0.0))))
     arm.context.advance(0.5)
     (result,) = client.results
@@ -105,8 +107,7 @@ def test_a_path_that_cannot_be_followed_ends_the_goal_with_joint_and_error():
 
 
 def test_a_goal_that_is_missed_ends_after_the_time_tolerance():
-    slow = JointAxis((0.0, 0.0, 1.0), lower=-3.0, upper=3.0, effort=100.0, velocity=0.5)
-    arm, client = arm_with({"constraints": {"goal_time": 0.5, "one": {"goal": 0.01}}}, axis=slow)
+    arm, client = arm_with({"constraints": {"goal_time": 0.5, "one": {"goal": 0.01}}}, axis=SLOW)
     client.send(trajectory(NAMES, (0.5, (2.0, 0.0))))
     arm.context.advance(0.95)
     assert client.results == []
@@ -117,8 +118,7 @@ def test_a_goal_that_is_missed_ends_after_the_time_tolerance():
 
 
 def test_tolerances_of_a_goal_come_before_those_of_the_parameters():
-    slow = JointAxis((0.0, 0.0, 1.0), lower=-3.0, upper=3.0, effort=100.0, velocity=0.5)
-    arm, client = arm_with({"constraints": {"one": {"trajectory": 0.1}}}, axis=slow)
+    arm, client = arm_with({"constraints": {"one": {"trajectory": 0.1}}}, axis=SLOW)
     client.send(trajectory(NAMES, (0.5, (0.5, 0.0))), path=[tolerance("one", -1.0)], late=5.0)
     arm.context.advance(2.0)
     assert client.results[0][1] == SUCCEEDED
@@ -141,11 +141,14 @@ def test_another_goal_takes_over_smoothly():
     assert arm.at() == pytest.approx(0.0, abs=1e-6)
 
 
-def test_cancelling_stops_where_the_joints_are():
+@pytest.mark.parametrize("end", [lambda arm, client, goal: client.cancel(goal),
+                                 lambda arm, client, goal: arm.switch((), ["arm"])],
+                         ids=("cancelled goal", "stopped controller"))
+def test_a_goal_that_is_ended_stops_where_the_joints_are(end):
     arm, client = arm_with()
     goal = client.send(trajectory(NAMES, (1.0, (1.0, 1.0))))
     arm.context.advance(0.3)
-    client.cancel(goal)
+    end(arm, client, goal)
     assert client.results[0][:2] == (goal, PREEMPTED)
     arm.context.advance(1.0)
     assert arm.at() == pytest.approx(0.3, abs=2e-3)
@@ -212,16 +215,6 @@ def test_goals_are_rejected_while_the_controller_does_not_run():
     assert client.results[0][1] == REJECTED
 
 
-def test_stopping_the_controller_ends_its_goal():
-    arm, client = arm_with()
-    goal = client.send(trajectory(NAMES, (1.0, (1.0, 1.0))))
-    arm.context.advance(0.5)
-    arm.switch((), ["arm"])
-    assert client.results[0][:2] == (goal, PREEMPTED)
-    arm.context.advance(1.0)
-    assert arm.at() == pytest.approx(0.5, abs=2e-3)
-
-
 def test_some_joints_may_move_alone_where_that_is_allowed():
     arm, _ = arm_with({"allow_partial_joints_goal": True})
     command(arm, trajectory(NAMES, (1.0, (1.0, 1.0))))
@@ -241,9 +234,8 @@ def test_values_of_joints_that_a_partial_trajectory_does_not_name_are_ignored():
 
 
 def test_a_partial_goal_does_not_judge_the_other_joints():
-    slow = JointAxis((0.0, 0.0, 1.0), lower=-3.0, upper=3.0, effort=100.0, velocity=0.5)
     arm, client = arm_with({"allow_partial_joints_goal": True, "constraints": {
-        "one": {"trajectory": 0.1, "goal": 0.1}}}, axis=slow)
+        "one": {"trajectory": 0.1, "goal": 0.1}}}, axis=SLOW)
     command(arm, trajectory(("one",), (0.2, (2.0,))))   # joint one stays behind
     goal = client.send(trajectory(("two",), (0.5, (0.1,))))
     arm.context.advance(0.6)
@@ -252,8 +244,7 @@ def test_a_partial_goal_does_not_judge_the_other_joints():
 
 
 def test_path_tolerances_count_from_the_start_of_the_goals_trajectory():
-    slow = JointAxis((0.0, 0.0, 1.0), lower=-3.0, upper=3.0, effort=100.0, velocity=0.5)
-    arm, client = arm_with({"constraints": {"one": {"trajectory": 0.1}}}, axis=slow)
+    arm, client = arm_with({"constraints": {"one": {"trajectory": 0.1}}}, axis=SLOW)
     command(arm, trajectory(NAMES, (0.4, (0.5, 0.0)), (1.5, (0.5, 0.0))))   # too fast for it
     goal = client.send(trajectory(NAMES, (1.0, (0.6, 0.0)), stamp=1.2))
     arm.context.advance(2.5)

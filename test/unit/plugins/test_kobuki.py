@@ -5,6 +5,8 @@ import math
 
 import numpy as np
 import pytest
+from planar_pose import planar_pose, yaw_of
+from robot_control import hide_package
 
 from my_simulations.description.sensor import Imu, Ray, Sensor
 from my_simulations.engine.commands import Contact
@@ -77,8 +79,7 @@ def test_the_imu_of_a_kobuki_tells_its_turn_from_where_it_was_loaded():
     context.advance(0.02)
     base.pose = Pose(orientation=quat_from_rpy(0.0, 0.0, 1.5))
     context.advance(0.02)
-    yaws = [2.0 * math.atan2(one.orientation.z, one.orientation.w)
-            for one in context.published["mobile_base/sensors/imu_data"]]
+    yaws = [yaw_of(one.orientation) for one in context.published["mobile_base/sensors/imu_data"]]
     assert yaws == pytest.approx([0.0, 0.5])
 
 
@@ -126,10 +127,10 @@ def test_the_odometry_takes_the_way_from_wheels_and_the_heading_from_the_gyrosco
             orientation=quat_from_rpy(0.0, 0.0, step * 0.02))
         context.advance(0.02)
     odom = context.published["odom"][-1]
-    yaw = 2.0 * math.atan2(odom.pose.pose.orientation.z, odom.pose.pose.orientation.w)
+    x, y, yaw = planar_pose(odom.pose.pose)
     assert yaw == pytest.approx(2.0)
     radius = 0.2 / 1.0
-    assert (odom.pose.pose.position.x, odom.pose.pose.position.y) == pytest.approx(
+    assert (x, y) == pytest.approx(
         (radius * math.sin(2.0), radius * (1.0 - math.cos(2.0))), abs=0.005)
     assert odom.twist.twist.angular.z == pytest.approx(1.0)
     assert {one[:2] for one in context.transforms} == {("odom", "base_footprint")}
@@ -184,14 +185,7 @@ def test_a_wheel_that_touches_nothing_has_dropped():
 
 def test_without_kobuki_msgs_it_drives():
     context, plugin = kobuki()
-    publish = context.publish
-
-    def missing(name, kind, *more):
-        if kind.startswith("kobuki_msgs"):
-            raise PluginError(f"{kind} is not there")
-        return publish(name, kind, *more)
-
-    context.publish = missing
+    hide_package(context, "kobuki_msgs")
     plugin.load()
     assert "kobuki_msgs" in context.log_messages[-1]
     context.deliver("mobile_base/commands/velocity", linear={"x": 0.2}, angular={"z": 0.0})

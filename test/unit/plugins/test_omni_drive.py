@@ -4,6 +4,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from planar_pose import planar_pose
 from robot_control import Arm, Message
 
 from my_simulations.description.model import JointAxis
@@ -48,9 +49,7 @@ def go(robot, seconds, x=0.0, y=0.0, yaw=0.0):
 
 def odometry(robot):
     robot.context.advance(0.04)
-    pose = robot.published("odom/odometry")[-1].pose.pose
-    return (pose.position.x, pose.position.y,
-            2.0 * math.atan2(pose.orientation.z, pose.orientation.w))
+    return planar_pose(robot.published("odom/odometry")[-1].pose.pose)
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.03])

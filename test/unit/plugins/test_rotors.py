@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from planar_pose import yaw_of
 
 from my_simulations.description.model import Inertial, Joint, JointAxis
 from my_simulations.description.sensor import Gps, Sensor
@@ -186,9 +187,8 @@ def test_noise_of_odometry_has_its_moments():
     assert (x.mean(), x.std()) == pytest.approx((1.0, 0.1), abs=0.01)
     assert vz.std() == pytest.approx(0.6 / math.sqrt(3.0), rel=0.05)
     assert abs(vz - 0.1).max() <= 0.6
-    yaw = np.array([2.0 * math.atan2(one.pose.pose.orientation.z, one.pose.pose.orientation.w)
-                    for one in told])
-    assert yaw.std() == pytest.approx(0.01, rel=0.1)
+    yaws = [yaw_of(one.pose.pose.orientation) for one in told]
+    assert np.std(yaws) == pytest.approx(0.01, rel=0.1)
     assert told[0].pose.covariance[0] == pytest.approx(0.01)
 
 

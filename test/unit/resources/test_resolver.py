@@ -30,9 +30,23 @@ def found(resolver, uri, tree, base=""):
     return os.path.relpath(resolver.resolve(uri, base), tree)
 
 
-def test_a_model_uri_is_looked_for_in_the_model_paths_in_their_order(resolver, tree):
-    assert found(resolver, "model://crate/a.dae", tree) == "first/crate/a.dae"
-    assert found(resolver, "model://lamp/b.dae", tree) == "second/lamp/b.dae"
+@pytest.mark.parametrize("uri, path, base", [
+    ("model://crate/a.dae", "first/crate/a.dae", ""),           # model paths in their order
+    ("model://lamp/b.dae", "second/lamp/b.dae", ""),
+    ("model://pkg/meshes/c.dae", "pkg/meshes/c.dae", ""),       # a package
+    ("model:///lamp/b.dae", "second/lamp/b.dae", ""),           # with slashes before the name
+    ("package:///pkg/meshes/c.dae", "pkg/meshes/c.dae", ""),
+    ("package://pkg/meshes/c.dae", "pkg/meshes/c.dae", ""),
+    ("package://lamp/b.dae", "second/lamp/b.dae", ""),          # a model in place of a package
+    ("f.dae", "base/f.dae", "base"),                            # the folder of the file
+    ("file://f.dae", "base/f.dae", "base"),
+    ("worlds/w.world", "media/worlds/w.world", ""),             # resource paths, media folders
+    ("file://d.dae", "media/Media/models/d.dae", ""),
+    ("e.dae", "media/models/e.dae", ""),
+    ("file://with%20space.dae", "media/with space.dae", ""),
+])
+def test_a_uri_leads_to_the_first_path_that_has_it(resolver, tree, uri, path, base):
+    assert found(resolver, uri, tree, base and str(tree / base)) == path
 
 
 def test_devices_and_pipes_are_not_read(resolver, tree):
@@ -51,32 +65,6 @@ def test_a_pipe_in_a_model_folder_is_not_its_description(tmp_path):
     assert description_in(str(tmp_path)) is None
 
 
-def test_a_model_uri_may_name_a_package(resolver, tree):
-    assert found(resolver, "model://pkg/meshes/c.dae", tree) == "pkg/meshes/c.dae"
-
-
-def test_slashes_before_the_name_change_nothing(resolver, tree):
-    assert found(resolver, "model:///lamp/b.dae", tree) == "second/lamp/b.dae"
-    assert found(resolver, "package:///pkg/meshes/c.dae", tree) == "pkg/meshes/c.dae"
-
-
-def test_a_package_uri_is_looked_for_in_the_package_then_in_the_model_paths(resolver, tree):
-    assert found(resolver, "package://pkg/meshes/c.dae", tree) == "pkg/meshes/c.dae"
-    assert found(resolver, "package://lamp/b.dae", tree) == "second/lamp/b.dae"
-
-
-def test_a_relative_path_starts_from_the_folder_of_its_file(resolver, tree):
-    assert found(resolver, "f.dae", tree, str(tree / "base")) == "base/f.dae"
-    assert found(resolver, "file://f.dae", tree, str(tree / "base")) == "base/f.dae"
-
-
-def test_a_relative_path_is_looked_for_in_the_resource_paths_and_their_media_folders(
-        resolver, tree):
-    assert found(resolver, "worlds/w.world", tree) == "media/worlds/w.world"
-    assert found(resolver, "file://d.dae", tree) == "media/Media/models/d.dae"
-    assert found(resolver, "e.dae", tree) == "media/models/e.dae"
-
-
 def test_a_relative_path_is_looked_for_in_the_working_directory(resolver, tree, monkeypatch):
     monkeypatch.chdir(tree / "base")
     assert found(resolver, "f.dae", tree) == "base/f.dae"
@@ -86,10 +74,6 @@ def test_an_absolute_path_is_taken_as_it_is_then_under_the_model_paths(resolver,
     assert found(resolver, str(tree / "base/f.dae"), tree) == "base/f.dae"
     assert found(resolver, "file://" + str(tree / "base/f.dae"), tree) == "base/f.dae"
     assert found(resolver, "/crate/a.dae", tree) == "first/crate/a.dae"
-
-
-def test_percent_signs_of_a_file_uri_are_decoded(resolver, tree):
-    assert found(resolver, "file://with%20space.dae", tree) == "media/with space.dae"
 
 
 def missing(resolver, uri):

@@ -29,14 +29,10 @@ def test_unknown_options_are_refused_with_the_usage(capsys):
     assert "usage: gzserver" in capsys.readouterr().err
 
 
-def test_other_engines_are_accepted_with_one_line():
-    (notice,) = parse(["-e", "ode"]).notices
-    assert "ode" in notice and "Bullet" in notice
-
-
-def test_an_engine_nobody_knows_is_accepted_with_one_line():
-    (notice,) = parse(["-e", "havok"]).notices
-    assert "havok" in notice and "Bullet" in notice
+@pytest.mark.parametrize("engine", ["ode", "havok"])
+def test_other_engines_are_accepted_with_one_line(engine):
+    (notice,) = parse(["-e", engine]).notices
+    assert engine in notice and "Bullet" in notice
 
 
 def test_plugins_are_named_in_one_line():
