@@ -157,18 +157,23 @@ def middle(image):
     return list(image.crop(box).getdata())
 
 
+def assert_red(node, editor, name, file="mesh.dae", least=90, most_blue=60):
+    """The library and a camera show a mesh of a model in red."""
+    for image in (picture(editor, name), seen_by_camera(node, name, file)):
+        assert all(red > least and green < 60 and blue < most_blue
+                   for red, green, blue in middle(image))
+
+
 def test_a_collada_material_that_old_files_call_wholly_transparent_is_drawn(node, editor):
     unseen = lambert(color(0.8, 0, 0), "<transparent>" + color(1, 1, 1) +
                      "</transparent><transparency><float>0</float></transparency>")
     write_mesh(node, "unseen", [unseen], [FRONT])
-    for image in (picture(editor, "unseen"), seen_by_camera(node, "unseen")):
-        assert all(red > 90 and green < 60 for red, green, _ in middle(image))
+    assert_red(node, editor, "unseen")
 
 
 def test_of_two_faces_at_one_place_the_one_seen_from_its_front_is_drawn(node, editor):
     write_mesh(node, "two_faced", [RED, BLUE], [FRONT, BACK])
-    for image in (picture(editor, "two_faced"), seen_by_camera(node, "two_faced")):
-        assert all(red > 90 and blue < 60 for red, _, blue in middle(image))
+    assert_red(node, editor, "two_faced")
 
 
 def wall(name, size, place, paint):
@@ -197,8 +202,7 @@ def test_what_glows_has_the_colors_of_its_picture(node, editor):
     glowing = SAMPLED + lambert("<texture texture='r' texcoord='UV'/>",
                                 f"<emission>{color(1, 1, 1)}</emission>")
     write_mesh(node, "glowing", [glowing], [FRONT])
-    for image in (picture(editor, "glowing"), seen_by_camera(node, "glowing")):
-        assert all(red > 150 and green < 60 for red, green, _ in middle(image))
+    assert_red(node, editor, "glowing", least=150)
 
 
 def test_a_picture_for_the_glow_is_that_of_the_material(node, editor):
@@ -206,8 +210,12 @@ def test_a_picture_for_the_glow_is_that_of_the_material(node, editor):
     pictured = SAMPLED + lambert(color(1, 1, 1), "<emission><texture texture='r' texcoord='UV'/>"
                                                  "</emission>")
     write_mesh(node, "pictured", [pictured], [FRONT])
-    for image in (picture(editor, "pictured"), seen_by_camera(node, "pictured")):
-        assert all(red > 90 and green < 60 for red, green, _ in middle(image))
+    assert_red(node, editor, "pictured")
+
+
+def upright_square():
+    return trimesh.Trimesh([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]],
+                           [[0, 1, 2], [0, 2, 3]], process=False)
 
 
 @pytest.mark.parametrize("looks", [
@@ -215,28 +223,23 @@ def test_a_picture_for_the_glow_is_that_of_the_material(node, editor):
     {"baseColorFactor": [200, 0, 0, 255]}], ids=["picture", "color"])
 def test_a_gltf_mesh_has_its_colors(node, editor, looks, request):
     name = f"gltf_{request.node.callspec.id}"
-    square = trimesh.Trimesh([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]],
-                             [[0, 1, 2], [0, 2, 3]], process=False)
+    square = upright_square()
     square.visual = trimesh.visual.TextureVisuals(
         [[0, 0], [1, 0], [1, 1], [0, 1]], trimesh.visual.material.PBRMaterial(**looks))
     write_model(node, name, f"<mesh><uri>model://{name}/mesh.glb</uri></mesh>",
                 {"mesh.glb": square.export(file_type="glb")})
-    for image in (picture(editor, name), seen_by_camera(node, name, "mesh.glb")):
-        assert all(red > 90 and green < 60 for red, green, _ in middle(image))
+    assert_red(node, editor, name, "mesh.glb")
 
 
 @pytest.mark.parametrize("kind", ["vertices", "faces"])
 def test_a_ply_mesh_has_its_colors(node, editor, kind):
-    square = trimesh.Trimesh([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]],
-                             [[0, 1, 2], [0, 2, 3]], process=False)
+    square = upright_square()
     given = {"vertices": "vertex_colors", "faces": "face_colors"}[kind]
     setattr(square.visual, given, [200, 40, 20, 255])
     name = f"ply_{kind}"
     write_model(node, name, f"<mesh><uri>model://{name}/mesh.ply</uri></mesh>",
                 {"mesh.ply": square.export(file_type="ply")})
-    shown, seen = middle(picture(editor, name)), middle(seen_by_camera(node, name, "mesh.ply"))
-    for pixels in (shown, seen):
-        assert all(red > 90 and green < 60 and blue < 45 for red, green, blue in pixels)
+    assert_red(node, editor, name, "mesh.ply", most_blue=45)
 
 
 def test_a_large_mesh_is_drawn_with_fewer_triangles_without_a_graphics_card(node, editor):

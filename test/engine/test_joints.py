@@ -303,33 +303,30 @@ def test_a_screw_turns_thread_pitch_radians_a_metre_left_handed(lab: Lab):
     assert abs(z) == pytest.approx(0.5 * 9.8 / inertia, rel=0.03)
 
 
-def test_a_gearbox_turns_the_other_wheel_the_other_way_by_its_ratio(lab: Lab):
+def _drive_coupled(lab: Lab, kind: str, effort: float, axis: JointAxis, *more: Joint) -> int:
+    """Drive joint `ja` for 0.5 of 1 s; joint `jb` beside it has the axis `axis`."""
     lab.configure(gravity=(0.0, 0.0, 0.0))
     inertial = inertial_of_box(1.0, 0.2, 0.2, 0.2)
     links = [Link(name, Pose((n, 0, 0)), inertial) for n, name in enumerate(("frame", "a", "b"))]
     joints = [Joint("fix", "fixed", "world", "frame"),
-              Joint("ja", "revolute", "frame", "a", axis=JointAxis()),
-              Joint("jb", "revolute", "frame", "b", axis=JointAxis()),
-              Joint("box", "gearbox", "a", "b", gearbox_ratio=3.0, gearbox_reference="frame",
-                    axis=JointAxis(), axis2=JointAxis())]
-    model = lab.load(Model("gears", links=links, joints=joints))
-    lab.apply(AddTimedForces((TimedEffort(1, lab.joint_rows[model, "ja"], 0, 500, effort=0.05),)))
+              Joint("ja", kind, "frame", "a", axis=JointAxis()),
+              Joint("jb", kind, "frame", "b", axis=axis), *more]
+    model = lab.load(Model("coupled", links=links, joints=joints))
+    lab.apply(AddTimedForces((TimedEffort(1, lab.joint_rows[model, "ja"], 0, 500, effort=effort),)))
     lab.seconds(1)
+    return model
+
+
+def test_a_gearbox_turns_the_other_wheel_the_other_way_by_its_ratio(lab: Lab):
+    model = _drive_coupled(lab, "revolute", 0.05, JointAxis(),
+                           Joint("box", "gearbox", "a", "b", gearbox_ratio=3.0,
+                                 gearbox_reference="frame", axis=JointAxis(), axis2=JointAxis()))
     assert lab.joint(model, "ja")[0] > 0.1
     assert lab.joint(model, "jb")[0] == pytest.approx(-3.0 * lab.joint(model, "ja")[0], rel=1e-2)
 
 
 def test_a_mimic_axis_follows_with_multiplier_and_offset(lab: Lab):
-    lab.configure(gravity=(0.0, 0.0, 0.0))
-    inertial = inertial_of_box(1.0, 0.2, 0.2, 0.2)
-    links = [Link(name, Pose((n, 0, 0)), inertial) for n, name in enumerate(("frame", "a", "b"))]
-    joints = [Joint("fix", "fixed", "world", "frame"),
-              Joint("ja", "prismatic", "frame", "a", axis=JointAxis()),
-              Joint("jb", "prismatic", "frame", "b",
-                    axis=JointAxis(mimic=Mimic("ja", -2.0, 0.1)))]
-    model = lab.load(Model("grip", links=links, joints=joints))
-    lab.apply(AddTimedForces((TimedEffort(1, lab.joint_rows[model, "ja"], 0, 500, effort=2.0),)))
-    lab.seconds(1)
+    model = _drive_coupled(lab, "prismatic", 2.0, JointAxis(mimic=Mimic("ja", -2.0, 0.1)))
     leader = lab.joint(model, "ja")[0]
     assert leader > 0.05
     assert lab.joint(model, "jb")[0] == pytest.approx(-2.0 * leader + 0.1, abs=5e-3)

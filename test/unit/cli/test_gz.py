@@ -34,37 +34,26 @@ def test_command_that_is_not_offered_names_the_substitute(name, capsys):
     assert gz_command.INSTEAD[name] in capsys.readouterr().err
 
 
-def test_sdf_check_of_a_sound_file(capsys):
-    assert (
-        gz_command.main(["gz", "sdf", "-k", str(REPOSITORY / "world" / "empty_world.world")])
-        == gz_command.OK
-    )
-    assert "Check complete" in capsys.readouterr().out
+@pytest.mark.parametrize("option, file, text", [
+    ("-k", "world/empty_world.world", "Check complete"),
+    ("-p", "objects/ball.urdf", '<model name="ball">'),
+    ("-p", "world/empty_world.world", '<model name="ground_plane">')])     # of an include
+def test_sdf_checks_and_converts_files(option, file, text, capsys):
+    assert gz_command.main(["gz", "sdf", option, str(REPOSITORY / file)]) == gz_command.OK
+    out = capsys.readouterr().out
+    assert text in out and "<include>" not in out
+    assert ("<sdf version=" in out) == (option == "-p")
 
 
-def test_sdf_check_of_a_faulty_file(tmp_path, capsys):
-    file = tmp_path / "a.sdf"
-    file.write_text("<sdf version='1.6'><model name='m'><link/></model></sdf>")
-    assert gz_command.main(["gz", "sdf", "-k", str(file)]) == gz_command.FAILED
-    assert "Check complete" not in capsys.readouterr().out
-
-
-def test_sdf_print_turns_a_urdf_into_sdf(capsys):
-    assert (
-        gz_command.main(["gz", "sdf", "-p", str(REPOSITORY / "objects" / "ball.urdf")])
-        == gz_command.OK
-    )
-    text = capsys.readouterr().out
-    assert "<sdf version=" in text and '<model name="ball">' in text
-
-
-def test_sdf_print_writes_includes_in_full(capsys):
-    assert (
-        gz_command.main(["gz", "sdf", "-p", str(REPOSITORY / "world" / "empty_world.world")])
-        == gz_command.OK
-    )
-    text = capsys.readouterr().out
-    assert '<model name="ground_plane">' in text and "<include>" not in text
+@pytest.mark.parametrize("words, content, fault", [
+    (("sdf", "-k"), "<sdf version='1.6'><model name='m'><link/></model></sdf>", "name"),
+    (("log", "-i", "-f"), "no log", "is not a state log")])
+def test_a_faulty_file_is_a_failure(words, content, fault, tmp_path, capsys):
+    file = tmp_path / "file"
+    file.write_text(content)
+    assert gz_command.main(["gz", *words, str(file)]) == gz_command.FAILED
+    out, err = capsys.readouterr()
+    assert "Check complete" not in out and fault in out + err
 
 
 def test_log_info_tells_the_times(tmp_path, capsys):
@@ -76,13 +65,6 @@ def test_log_info_tells_the_times(tmp_path, capsys):
     log.close()
     assert gz_command.main(["gz", "log", "-i", "-f", str(path)]) == gz_command.OK
     assert "End: 3.500 s" in capsys.readouterr().out
-
-
-def test_log_that_is_none_is_a_failure(tmp_path, capsys):
-    path = tmp_path / "state.log"
-    path.write_text("no log")
-    assert gz_command.main(["gz", "log", "-i", "-f", str(path)]) == gz_command.FAILED
-    assert "is not a state log" in capsys.readouterr().err
 
 
 def test_world_needs_a_master(capsys, monkeypatch):

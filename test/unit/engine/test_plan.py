@@ -10,12 +10,12 @@ from my_simulations.engine.body_plan import BASE, BodyPlanError, open_joints, pl
 from my_simulations.geometry import Pose
 
 
-def model(names: str, *joints: str, static: bool = False) -> Model:
-    """`model("abc", "a>b", "world>c")`: revolute joints parent>child."""
+def model(names: str, *joints: str, static: bool = False, kind: str = "revolute") -> Model:
+    """`model("abc", "a>b", "world>c")`: joints parent>child."""
     made = []
     for text in joints:
         parent, child = text.split(">")
-        made.append(Joint(text, "revolute", parent, child, axis=JointAxis()))
+        made.append(Joint(text, kind, parent, child, axis=JointAxis()))
     return Model("m", static=static, joints=made,
                  links=[Link(name, Pose((float(n), 0, 0))) for n, name in enumerate(names)])
 
@@ -24,14 +24,29 @@ def shape(planned):
     return [([link.index for link in body.links], body.fixed_base) for body in planned]
 
 
+def kinematic(made: Model, *names: str) -> Model:
+    return replace(made, links=[replace(link, kinematic=link.name in names)
+                                for link in made.links])
+
+
+@pytest.mark.parametrize("made, bodies", [
+    (model("abc", "c>a", "c>b"), [([2, 0, 1], False)]),
+    (model("abcd", "a>b", "c>d"), [([0, 1], False), ([2, 3], False)]),
+    (model("ab", "a>b", static=True), [([0], False), ([1], False)]),
+    (model("ab", "a>b", kind="gearbox"), [([0], False), ([1], False)]),
+    (model("abc", "a>b", "b>c", "c>a"), [([0, 1, 2], False)]),
+    (kinematic(model("ab"), "a"), [([0], False), ([1], False)]),
+], ids=["a tree begins at the link that no joint has as child", "separate trees", "a static model",
+        "joint types that connect nothing", "a ring begins at the first link",
+        "a kinematic link without joints"])
+def test_links_become_bodies(made, bodies):
+    assert shape(plan_bodies(made)) == bodies
+
+
 def test_links_without_joints_are_rigid_bodies():
     bodies = plan_bodies(model("abc"))
     assert shape(bodies) == [([0], False), ([1], False), ([2], False)]
     assert all(body.is_rigid for body in bodies)
-
-
-def test_joined_links_are_one_tree_from_the_link_no_joint_has_as_child():
-    assert shape(plan_bodies(model("abc", "c>a", "c>b"))) == [([2, 0, 1], False)]
 
 
 def test_a_joint_to_the_world_makes_a_fixed_base():
@@ -40,23 +55,11 @@ def test_a_joint_to_the_world_makes_a_fixed_base():
     assert bodies[0].links[0].parent == BASE and bodies[0].links[1].parent == 0
 
 
-def test_separate_trees_are_separate_bodies():
-    assert shape(plan_bodies(model("abcd", "a>b", "c>d"))) == [([0, 1], False), ([2, 3], False)]
-
-
-def test_a_static_model_is_immovable_links_whatever_its_joints():
-    assert shape(plan_bodies(model("ab", "a>b", static=True))) == [([0], False), ([1], False)]
-
-
 def test_a_loop_is_cut_and_the_open_joint_named():
     looped = model("abc", "a>b", "b>c", "a>c")
     bodies = plan_bodies(looped)
     assert shape(bodies) == [([0, 1, 2], False)]
     assert [joint.name for joint in open_joints(looped, bodies)] == ["b>c"]
-
-
-def test_a_ring_without_a_root_starts_at_the_first_link():
-    assert shape(plan_bodies(model("abc", "a>b", "b>c", "c>a"))) == [([0, 1, 2], False)]
 
 
 def test_a_child_with_two_parents_hangs_the_second_parent_on_the_reversed_joint():
@@ -72,25 +75,10 @@ def test_a_joint_to_a_missing_link_is_an_error_that_names_it(text):
         plan_bodies(model("a", text))
 
 
-def test_unknown_joint_types_connect_nothing():
-    made = model("ab", "a>b")
-    made.joints[0].type = "gearbox"
-    assert shape(plan_bodies(made)) == [([0], False), ([1], False)]
-
-
-def kinematic(made: Model, *names: str) -> Model:
-    return replace(made, links=[replace(link, kinematic=link.name in names)
-                                for link in made.links])
-
-
 def test_a_kinematic_link_with_joints_is_fixed_and_carries_its_tree():
     bodies = plan_bodies(kinematic(model("abc", "b>a", "a>c"), "a"))
     assert shape(bodies) == [([0, 1, 2], True)]
     assert bodies[0].links[0].joint is None and bodies[0].links[0].parent == BASE
-
-
-def test_a_kinematic_link_without_joints_is_a_rigid_body():
-    assert shape(plan_bodies(kinematic(model("ab"), "a"))) == [([0], False), ([1], False)]
 
 
 def test_kinematic_links_that_are_connected_are_fixed_to_one_base():

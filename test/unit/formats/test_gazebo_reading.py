@@ -99,28 +99,25 @@ def test_an_inertia_that_no_body_has_becomes_one_about_each_axis():
     assert tolerated(issues) == ["inertia-not-positive"] and errors(issues) == []
 
 
-def test_an_axis_of_no_length_is_the_x_axis_of_the_world():
-    model, issues = model_of(
-        '<pose>0 0 0 0 0 1.5707963267948966</pose>' + LINKS + '<joint name="j" type="revolute">'
-        "<parent>a</parent><child>b</child><axis><xyz>0 0 0</xyz></axis></joint>", "1.7")
+_QUARTER_TURN = "0 0 1.5707963267948966"
+
+
+@pytest.mark.parametrize("read, code", [
+    (lambda: model_of(
+        f"<pose>0 0 0 {_QUARTER_TURN}</pose>{LINKS}" '<joint name="j" type="revolute">'
+        "<parent>a</parent><child>b</child><axis><xyz>0 0 0</xyz></axis></joint>", "1.7"),
+     "joint-axis-zero"),
+    (lambda: model_of(
+        LINKS + f'<joint name="j" type="prismatic"><pose>0 0 0 {_QUARTER_TURN}</pose>'
+        "<parent>a</parent><child>b</child></joint>", "1.7"), "joint-axis-missing"),
+    (lambda: robot_of(robot_link("a") + robot_link("b") + robot_joint(
+        "j", "a", "b", "continuous", '<axis xyz="0 0 0"/>', rpy=_QUARTER_TURN)),
+     "joint-axis-zero"),
+], ids=["no length: x of the world", "no axis: x of the child", "of a robot: x of the model"])
+def test_a_joint_without_axis_or_with_one_of_no_length_turns_about_x(read, code):
+    model, issues = read()
     assert model.joints[0].axis.xyz == pytest.approx((0, -1, 0))
-    assert tolerated(issues) == ["joint-axis-zero"] and errors(issues) == []
-
-
-def test_a_joint_without_axis_turns_about_x_of_its_child():
-    model, issues = model_of(
-        LINKS + '<joint name="j" type="prismatic"><pose>0 0 0 0 0 1.5707963267948966</pose>'
-        "<parent>a</parent><child>b</child></joint>", "1.7")
-    assert model.joints[0].axis.xyz == pytest.approx((0, -1, 0))
-    assert tolerated(issues) == ["joint-axis-missing"] and errors(issues) == []
-
-
-def test_a_robots_axis_of_no_length_is_the_x_axis_of_the_model():
-    robot, issues = robot_of(
-        robot_link("a") + robot_link("b") + robot_joint(
-            "j", "a", "b", "continuous", '<axis xyz="0 0 0"/>', rpy="0 0 1.5707963267948966"))
-    assert robot.joints[0].axis.xyz == pytest.approx((0, -1, 0))
-    assert tolerated(issues) == ["joint-axis-zero"] and errors(issues) == []
+    assert tolerated(issues) == [code] and errors(issues) == []
 
 
 @pytest.mark.parametrize("joint, code", [
