@@ -91,9 +91,9 @@ class ConnectedModels(KnownModels):
                 at = snapshot.link(session.link_row(child))[0]
                 if parent != WORLD:
                     at = compose(inverse(snapshot.link(session.link_row(parent))[0]), at)
-                wanted = self._links.between.added(
+                wanted = self._links.between.with_joint(
                     session.registry, Joint(name, "fixed", parent, child), at)
-                (command,) = wanted.named(name).commands(session.registry)
+                (command,) = wanted.with_name(name).commands(session.registry)
             session.call(Batch((DisconnectModels((name,)), command)))
             self._links = self._links.with_joint(wanted, name)
 

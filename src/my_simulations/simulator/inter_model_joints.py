@@ -41,30 +41,30 @@ class InterModelJoints:
         return any(one.joint.type == "prismatic" and _touches(one.joint, model)
                    for one in self._all)
 
-    def without(self, model: str) -> "InterModelJoints":
-        return self._of([one for one in self._all if not _touches(one.joint, model)])
+    def without_model(self, model: str) -> "InterModelJoints":
+        return self._make([one for one in self._all if not _touches(one.joint, model)])
 
-    def of(self, model: str) -> "InterModelJoints":
+    def of_model(self, model: str) -> "InterModelJoints":
         """The joints that connect a model, which are deleted with it."""
-        return self._of([one for one in self._all if _touches(one.joint, model)])
+        return self._make([one for one in self._all if _touches(one.joint, model)])
 
-    def joined(self, others: "InterModelJoints") -> "InterModelJoints":
-        return self._of(self._all + others._all)
+    def with_joints(self, others: "InterModelJoints") -> "InterModelJoints":
+        return self._make(self._all + others._all)
 
-    def renamed(self, old: str, new: str, kept: Sequence[str]) -> "InterModelJoints":
+    def with_model_renamed(self, old: str, new: str, kept: Sequence[str]) -> "InterModelJoints":
         """The same joints after a model was renamed; those of the names `kept` keep theirs."""
-        return self._of([replace(one, joint=replace(
+        return self._make([replace(one, joint=replace(
             one.joint, name=one.joint.name if one.joint.name in kept
             else _rescope(one.joint.name, old, new), parent=_rescope(one.joint.parent, old, new),
             child=_rescope(one.joint.child, old, new))) for one in self._all])
 
-    def present(self, registry: Registry) -> "InterModelJoints":
+    def with_existing_links(self, registry: Registry) -> "InterModelJoints":
         """The joints whose parent and child links exist in the registry."""
-        return self._of([one for one in self._all if all(
+        return self._make([one for one in self._all if all(
             _row(registry, end, "", None) is not None
             for end in (one.joint.parent, one.joint.child))])
 
-    def located(self, registry: Registry) -> Tuple["InterModelJoints", List[Issue]]:
+    def locate(self, registry: Registry) -> Tuple["InterModelJoints", List[Issue]]:
         """The joints with their poses in the world as loaded; warnings about unusable ones."""
         found, issues = [], []
         for joint in self.joints:
@@ -77,22 +77,22 @@ class InterModelJoints:
             elif child is not None and parent is not None:
                 at = compose(child, joint.pose)
                 found.append(_Connection(joint, compose(inverse(parent), at)))
-        return self._of(found), issues
+        return self._make(found), issues
 
-    def added(self, registry: Registry, joint: Joint, parent_from_joint: Pose
+    def with_joint(self, registry: Registry, joint: Joint, parent_from_joint: Pose
               ) -> "InterModelJoints":
         """With one more, whose links must be there. Raises UnknownEntityError."""
         for end in (joint.parent, joint.child):
             if end != WORLD:
                 registry.link(end)
-        return self._of([one for one in self._all if one.joint.name != joint.name]
-                        + [_Connection(joint, parent_from_joint)])
+        return self._make([one for one in self._all if one.joint.name != joint.name]
+                          + [_Connection(joint, parent_from_joint)])
 
-    def named(self, name: str) -> "InterModelJoints":
-        return self._of([one for one in self._all if one.joint.name == name])
+    def with_name(self, name: str) -> "InterModelJoints":
+        return self._make([one for one in self._all if one.joint.name == name])
 
-    def removed(self, names: Sequence[str]) -> "InterModelJoints":
-        return self._of([one for one in self._all if one.joint.name not in names])
+    def without_joints(self, names: Sequence[str]) -> "InterModelJoints":
+        return self._make([one for one in self._all if one.joint.name not in names])
 
     def commands(self, registry: Registry, model: str = "",
                  instead: Optional[Entity] = None) -> List[ConnectModels]:
@@ -112,7 +112,7 @@ class InterModelJoints:
         return made
 
     @staticmethod
-    def _of(connections: List[_Connection]) -> "InterModelJoints":
+    def _make(connections: List[_Connection]) -> "InterModelJoints":
         made = InterModelJoints()
         made._all = connections
         return made

@@ -29,16 +29,17 @@ class ModelConnections:
     @property
     def permanent_joints(self) -> InterModelJoints:
         """The joints between models without those of `Models.attach`, which a reset removes."""
-        return self.between.removed(self.attached)
+        return self.between.without_joints(self.attached)
 
-    def without(self, model: str) -> "ModelConnections":
-        return replace(self, between=self.between.without(model),
+    def without_model(self, model: str) -> "ModelConnections":
+        return replace(self, between=self.between.without_model(model),
                        pinned=_others(self.pinned, model), held=_others(self.held, model))
 
-    def renamed(self, old: str, new: str, registry: Registry) -> "ModelConnections":
+    def with_model_renamed(self, old: str, new: str, registry: Registry) -> "ModelConnections":
         """After a model was edited, and perhaps renamed."""
         return ModelConnections(
-            self.between.renamed(old, new, self.attached).present(registry), self.attached,
+            self.between.with_model_renamed(old, new, self.attached).with_existing_links(registry),
+            self.attached,
             *(tuple(new if name == old else name for name in names)
               for names in (self.pinned, self.held)))
 
@@ -47,7 +48,7 @@ class ModelConnections:
         return replace(self, between=joints, attached=(*_others(self.attached, name), name))
 
     def without_joint(self, name: str) -> "ModelConnections":
-        return replace(self, between=self.between.removed((name,)),
+        return replace(self, between=self.between.without_joints((name,)),
                        attached=_others(self.attached, name))
 
     def detached(self) -> "ModelConnections":
@@ -55,7 +56,7 @@ class ModelConnections:
         return replace(self, between=self.permanent_joints, attached=())
 
     def joint(self, name: str) -> List[Joint]:
-        return self.between.named(name).joints
+        return self.between.with_name(name).joints
 
     def detach_commands(self) -> List[Command]:
         """Commands that remove the joints of `Models.attach` from the engine."""
@@ -71,7 +72,7 @@ class ModelConnections:
         """The command that pins `entity` if the model that it is about to replace is pinned."""
         if model not in (*self.pinned, *self.held):
             return []
-        others = self.without(model).pin_command(registry)
+        others = self.without_model(model).pin_command(registry)
         return [PinModels((*others.model_ids, entity.model_id))]
 
     def commands(self, registry: Registry) -> List[Command]:

@@ -103,7 +103,7 @@ class Models(ConnectedModels):
         with session.structure_lock:
             session.await_posted()
             again = InterModelJoints() if deleted is None else deleted.joints
-            between = self._links.between.joined(again)
+            between = self._links.between.with_joints(again)
             with session.registry_lock:
                 old = self._replaceable(model.name, replace)
                 # A joint to a model that is restored later may need it articulated.
@@ -127,9 +127,9 @@ class Models(ConnectedModels):
             with session.registry_lock:
                 session.registry.add(entity, None if deleted is None else deleted.slot)
                 if deleted is not None:
-                    self._set_joints(between.present(session.registry))
+                    self._set_joints(between.with_existing_links(session.registry))
                 if old is not None:
-                    self._set_joints(self._links.between.without(model.name))
+                    self._set_joints(self._links.between.without_model(model.name))
                     self._forget(old)
 
     def spawn_all(self, models: Sequence[NewModel]) -> None:
@@ -201,10 +201,10 @@ class Models(ConnectedModels):
         """Remove an entity, which the engine no longer has, from the registry."""
         registry, name = self._session.registry, entity.model.name
         deleted = DeletedModel(OrderSlot.of(registry.names(), name),
-                               self._links.permanent_joints.of(name),
+                               self._links.permanent_joints.of_model(name),
                                entity.launched, entity.start, entity.articulated)
         registry.remove(name)
-        self._links = self._links.without(name)
+        self._links = self._links.without_model(name)
         self._forget(entity)
         return deleted
 
@@ -284,7 +284,8 @@ class Models(ConnectedModels):
                 raise
             with session.registry_lock:
                 session.registry.swap(old, entity)
-                self._links = self._links.renamed(name, model.name, session.registry)
+                self._links = self._links.with_model_renamed(name, model.name,
+                                                             session.registry)
                 self._forget(old)
             self._wrenches.keep(forces)
             self._drives.adopt(driving)
@@ -356,14 +357,15 @@ class Models(ConnectedModels):
             if len(group) == 1 or not self._load_together(group, meshes):
                 for model in group:
                     self._load_or_skip(model, meshes.get(model.name))
-        located, issues = self._links.between.located(session.registry)
+        located, issues = self._links.between.locate(session.registry)
         for issue in issues:
             session.log(replaced(issue, file=session.world.file))
         self._set_joints(InterModelJoints())  # a restarted engine gets those that were made
         for command in located.commands(session.registry):
             try:
                 session.call(command)
-                self._set_joints(self._links.between.joined(located.named(command.joint.name)))
+                self._set_joints(self._links.between.with_joints(
+                    located.with_name(command.joint.name)))
             except CommandError as fault:
                 session.log(error("joint-refused", str(fault), file=session.world.file))
 
