@@ -27,8 +27,8 @@ from my_simulations.engine.convex.hulls import (
     is_convex,
     is_flat,
     moved_onto_hull,
-    stretched,
-    thickened,
+    stretch_parts,
+    thicken_points,
 )
 
 
@@ -479,7 +479,7 @@ def test_flat_is_what_has_next_to_no_thickness():
 
 
 def test_thickening_leaves_what_is_thick_enough():
-    made = thickened(box((2.0, 1.0, 0.001)).vertices, 0.1)
+    made = thicken_points(box((2.0, 1.0, 0.001)).vertices, 0.1)
     assert np.ptp(made.vertices, axis=0) == pytest.approx([2.0, 1.0, 0.1])
 
 
@@ -501,7 +501,7 @@ def test_parts_are_stretched_to_the_reach_of_the_mesh_but_not_over_what_is_missi
     reach = np.array([(0.0, 0.0, 0.0), (1.0, 1.0, 1.0)])
     parts = [np.array([(0.01, 0.0, 0.0), (0.5, 1.0, 0.5)]),
              np.array([(0.5, 0.0, 0.4), (0.99, 1.0, 0.6)])]
-    one, other = stretched(parts, reach)
+    one, other = stretch_parts(parts, reach)
     assert one[0] == pytest.approx([0.0, 0.0, 0.0]) and other[1] == pytest.approx([1.0, 1.0, 0.6])
     assert one[1] == pytest.approx([0.5, 1.0, 0.5])
 
@@ -513,5 +513,5 @@ def test_a_hull_of_points_next_to_flat_is_made_all_the_same():
 
 def test_a_thin_wall_is_stretched_by_as_much_as_a_voxel():
     reach = np.array([(0.0, 0.0, 0.0), (1.0, 1.0, 0.02)])
-    (part,) = stretched([np.array([(0.0, 0.0, 0.005), (1.0, 1.0, 0.01)])], reach)
+    (part,) = stretch_parts([np.array([(0.0, 0.0, 0.005), (1.0, 1.0, 0.01)])], reach)
     assert part[:, 2] == pytest.approx([0.0, 0.02])

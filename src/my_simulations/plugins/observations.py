@@ -128,7 +128,7 @@ class Observation:
             self._was_idle = True
             self.rule = None
             return
-        links, axes, queries = self.owner.observed(self.reads)
+        links, axes, queries = self.owner.list_observed(self.reads)
         self.rule = RecordRule(self.number, self._rate, links, axes, self.reads.world, queries,
                                wanted, self._asked if self.is_single else 0)
         self._layout = PartLayout({row: n for n, row in enumerate(links)},

@@ -171,8 +171,8 @@ class SimulatedContext(GraphUser):
         made.begin(self._schedule.time_step)
         return made
 
-    def observed(self, reads: Reads) -> Tuple[Tuple[int, ...], Tuple[int, ...],
-                                              Tuple[Command, ...]]:
+    def list_observed(self, reads: Reads) -> Tuple[Tuple[int, ...], Tuple[int, ...],
+                                                   Tuple[Command, ...]]:
         """Rows of links and joint axes that observations record, and their queries."""
         links = {link.row for link in self._links.values()}
         if self.entity.link_names:

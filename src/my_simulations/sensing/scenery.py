@@ -1,7 +1,7 @@
 """Roads and actors, which belong to no model: surfaces at places of their own.
 
-The n-th of them is at the row -1 - n of a table of poses: `extended` puts theirs behind those of
-the links, so that code that places links places them, too.
+The n-th of them is at the row -1 - n of a table of poses: `append_poses` puts theirs behind those
+of the links, so that code that places links places them, too.
 
 Roads as triangles: the strip of the editor's page (web/js/view/road_strip.ts).
 
@@ -77,7 +77,7 @@ class Scenery:
         """Number of rows, which follow those of the links: fixed visuals and actors."""
         return len(self._fixed) + len(self._figures)
 
-    def extended(self, poses: np.ndarray, ns: int) -> np.ndarray:
+    def append_poses(self, poses: np.ndarray, ns: int) -> np.ndarray:
         """Append the poses of fixed visuals and actors at a sim time (ns) to (n, 7) link poses."""
         if not self.count:
             return poses
@@ -91,7 +91,7 @@ class Scenery:
             return b""
         return repr([shape.form_at(ns / 1e9) for shape, _ in self._figures]).encode()
 
-    def reshaped(self, ns: int) -> List[Tuple[int, np.ndarray]]:
+    def take_reshaped_parts(self, ns: int) -> List[Tuple[int, np.ndarray]]:
         """Return the parts whose shape changed since the last call, with their rows of `Piece`."""
         found: List[Tuple[int, np.ndarray]] = []
         for n, (shape, first) in enumerate(self._figures):

@@ -230,7 +230,7 @@ class Drives:
         self._servos.clear()
         self._slips.clear()
 
-    def transferred(self, old: Entity, new: Entity) -> List[Command]:
+    def transfer_to_successor(self, old: Entity, new: Entity) -> List[Command]:
         """Commands that move the drives of a replaced model to its successor `new`."""
         names = {old.first_joint_row + n: name for n, name in enumerate(old.joint_names)}
         motors = [replace(motor, row=new.first_joint_row + new.joint_names.index(names[row]))
@@ -256,7 +256,7 @@ class Drives:
         return commands
 
     def adopt(self, commands: Sequence[Command]) -> None:
-        """Record the drives of commands from `transferred`, after the engine has applied them."""
+        """Record the drives that `transfer_to_successor` moved, after the engine has moved them."""
         for command in commands:
             if isinstance(command, SetMotors):
                 self._motors.update({motor.row: motor for motor in command.motors})

@@ -270,8 +270,8 @@ class Models(ConnectedModels):
                                             self._links.between.slides(model.name))
             entity.pose, entity.articulated = old.pose, old.articulated
             entity.launched, entity.start = old.launched, old.start
-            forces = self._wrenches.transferred(old, entity)
-            driving = self._drives.transferred(old, entity)
+            forces = self._wrenches.transfer_to_successor(old, entity)
+            driving = self._drives.transfer_to_successor(old, entity)
             try:
                 session.call(Batch((
                     replaced(load_command(entity), inherit=old.model_id),

@@ -43,7 +43,7 @@ class Resets:
             now = self._session.call(Pause()).step
             # Our own data changes after the engine has applied the reset: an engine that is
             # restarted before that must get the old data.
-            pending = self._wrenches.shifted(now, 0)
+            pending = self._wrenches.shift_pending(now, 0)
             self._session.call(Batch((SetClock(0, 0), AddTimedForces(tuple(pending)),
                                       *self._clock.resume_commands())))
             self._wrenches.replace_all(pending)

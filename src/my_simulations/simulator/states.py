@@ -205,7 +205,7 @@ class States:
             if not clock:
                 session.call(Batch((Pause(), *commands, *self._clock.resume_commands())))
                 return
-            pending = self._wrenches.shifted(session.call(Pause()).step, state.step)
+            pending = self._wrenches.shift_pending(session.call(Pause()).step, state.step)
             session.call(Batch((SetClock(state.step, state.sim_ns), *commands,
                                 AddTimedForces(tuple(pending)), *self._clock.resume_commands())))
             self._wrenches.replace_all(pending)

@@ -198,7 +198,7 @@ class Wrenches:
         """Wrenches and efforts that act or start after a step count."""
         return tuple(force for force in self._forces.values() if force.stop > step)
 
-    def shifted(self, now: int, step: int) -> List[TimedForce]:
+    def shift_pending(self, now: int, step: int) -> List[TimedForce]:
         """The pending ones as they are once the clock shows `step` instead of `now`.
 
         Each lasts as long as it would have.
@@ -222,7 +222,7 @@ class Wrenches:
                         if not (entity.has_link_row if isinstance(force, TimedWrench)
                                 else entity.has_joint_row)(force.row)}
 
-    def transferred(self, old: Entity, new: Entity) -> List[TimedForce]:
+    def transfer_to_successor(self, old: Entity, new: Entity) -> List[TimedForce]:
         """The entries of a replaced model, with the rows of its successor `new`."""
         links = {old.first_link_row + n: new.first_link_row + new.link_names.index(name)
                  for n, name in enumerate(old.link_names) if name in new.link_names}

@@ -39,8 +39,8 @@ class Frame:
         if hulls.is_flat(self.points):
             least, most = _THICKNESS_M
             thickness = min(max(self.size / 100, least), most) / self.size
-            return self.result([hulls.thickened(self.points, thickness)], FLAT)
-        mesh = hulls.cleaned(self.points, triangles)
+            return self.result([hulls.thicken_points(self.points, thickness)], FLAT)
+        mesh = hulls.clean_mesh(self.points, triangles)
         if not len(mesh.faces):
             return self.result([hulls.hull_of(self.points)], NOT_DIVIDED)
         if hulls.is_convex(mesh):

@@ -25,7 +25,7 @@ _VOXEL = 0.02        # of the longest extent, about V-HACD's at this resolution
 _MOST_PIECES = 64    # more separate pieces are merged
 
 
-def cleaned(vertices: Any, triangles: Any) -> Any:
+def clean_mesh(vertices: Any, triangles: Any) -> Any:
     """A `trimesh.Trimesh` with merged equal vertices, without degenerate triangles."""
     import trimesh
 
@@ -108,7 +108,7 @@ def is_flat(points: Any) -> bool:
     return bool(spans[-1] <= _FLAT * max(spans[0], 1e-12))
 
 
-def thickened(points: Any, thickness: float) -> Hull:
+def thicken_points(points: Any, thickness: float) -> Hull:
     """The hull of flat points, extended to a thickness of at least `thickness` m."""
     import numpy as np
 
@@ -185,7 +185,7 @@ def convex_pieces(mesh: Any) -> Optional[List[Hull]]:
         return None
     found = {}
     for n in sorted(range(len(groups)), key=lambda n: len(groups[n])):  # cheap tests come first
-        found[n] = cleaned(mesh.vertices, mesh.faces[groups[n]])
+        found[n] = clean_mesh(mesh.vertices, mesh.faces[groups[n]])
         if not is_convex(found[n]):
             return None
     outer = _not_inside([full_hull(found[n].vertices) for n in sorted(found)])
@@ -220,7 +220,7 @@ def moved_onto_hull(points: Any, hull: Hull) -> Any:
     return moved
 
 
-def stretched(parts: List[Any], points: Any) -> List[Any]:
+def stretch_parts(parts: List[Any], points: Any) -> List[Any]:
     """Scale parts so that their common bounding box is that of `points`.
 
     V-HACD's parts are also slightly smaller than the mesh, so bodies on them would sink in. Along

@@ -109,7 +109,7 @@ def _run_vhacd(points: Any, triangles: Any, folder: str) -> List[Any]:
     pieces = [hulls.moved_onto_hull(piece, hull) for piece in _objects(target)]
     pieces = [hulls.hull_of(piece, hulls.PART_VERTICES).vertices for piece in pieces
               if not hulls.is_flat(piece)]
-    return [hulls.full_hull(piece) for piece in hulls.stretched(pieces, vertices)] \
+    return [hulls.full_hull(piece) for piece in hulls.stretch_parts(pieces, vertices)] \
         if pieces else []
 
 

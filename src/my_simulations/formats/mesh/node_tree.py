@@ -49,7 +49,7 @@ class Bones:
                      if joint and not (self.parents[n] >= 0 and self.joints[self.parents[n]])),
                     None)
 
-    def paired(self, other: "Bones") -> Dict[int, int]:
+    def match_bones(self, other: "Bones") -> Dict[int, int]:
         """Number of our node by that of the other tree's that moves it.
 
         Joints are paired by their order where both skeletons branch alike, whatever they are

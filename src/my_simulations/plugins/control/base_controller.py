@@ -76,9 +76,9 @@ class BaseController(Controller):
         """Return the motion of the base in the last `dt` s from its wheels: m, m, rad."""
         raise NotImplementedError
 
-    def limited(self, wanted: Planar, dt: float) -> Planar:
+    def limit(self, wanted: Planar, dt: float) -> Planar:
         """Return a command within the limits."""
-        found = [limits.limited(new, last, before, dt) for limits, new, last, before in zip(
+        found = [limits.limit(new, last, before, dt) for limits, new, last, before in zip(
             self.limits, wanted, self.last, self.before)]
         return found[0], found[1], found[2]
 
@@ -173,7 +173,7 @@ class BaseController(Controller):
     def _update(self, dt: float) -> bool:
         """Apply the command within its limits; return whether the velocity no longer changes."""
         wanted = STANDING if self._time_out.is_over else self.command
-        limited = self.limited(wanted, dt)
+        limited = self.limit(wanted, dt)
         done = self.before == self.last == limited
         self.before, self.last = self.last, limited
         self.drive(limited)

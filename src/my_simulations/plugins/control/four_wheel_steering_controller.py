@@ -126,9 +126,9 @@ class FourWheelSteeringController(BaseController):
         if self.follow_twist(message):
             self._by_angles = False
 
-    def limited(self, wanted: Planar, dt: float) -> Planar:
+    def limit(self, wanted: Planar, dt: float) -> Planar:
         """The speed within its limits; angles within a quarter turn, else the yaw rate."""
-        speed, _, yaw = super().limited((wanted[0], 0.0, wanted[2]), dt)
+        speed, _, yaw = super().limit((wanted[0], 0.0, wanted[2]), dt)
         if not self._by_angles:
             return speed, 0.0, yaw
         return (speed, clamp(wanted[1], -_HALF_TURN, _HALF_TURN),

@@ -61,7 +61,7 @@ class HardwareJoint:
         if not self.halted:
             self._steer(replace(self._servo, target=value))
 
-    def commanded(self, step: int, step_size: float) -> Optional[float]:
+    def read_command(self, step: int, step_size: float) -> Optional[float]:
         """Return the command of the interface at a step; None if an engine loop computes it."""
         ordered = self._ordered
         if ordered.gains is not None:

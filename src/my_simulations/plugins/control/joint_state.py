@@ -89,7 +89,7 @@ class JointReadCommandController(Controller):
             self.hardware.joints, key=lambda joint: (_ORDER.index(joint.interface), joint.name))
         message = stamp_message(context, "sensor_msgs/JointState")
         message.name = [joint.name for joint in joints]
-        commands = [joint.commanded(context.step, context.step_size) or 0.0 for joint in joints]
+        commands = [joint.read_command(context.step, context.step_size) or 0.0 for joint in joints]
         message.position, message.velocity, message.effort = (
             [value if joint.interface == interface else 0.0
              for joint, value in zip(joints, commands)] for interface in _ORDER)

@@ -130,7 +130,7 @@ class PositionController(_OfQuadrotor):
         if self._wanted is None:
             return
         pose = self.hardware.link.pose
-        lack = subtract(self._limits.clamped(self._wanted), pose.position)
+        lack = subtract(self._limits.clamp(self._wanted), pose.position)
         x, y, z = (pid.command(error, dt) for pid, error in zip(self._axes, lack))
         turn = math.remainder(self._wanted_yaw - self.hardware.yaw, 2.0 * math.pi)
         command = TwistCommand((x, y, z), self._yaw_pid.command(turn, dt), self.context.now_ns)
@@ -198,7 +198,7 @@ class VelocityController(_OfQuadrotor):
             self._command = hardware.twist
         command, yaw = self._command, hardware.yaw
         c, s = math.cos(yaw), math.sin(yaw)
-        x, y, z = self._limits.clamped(command.linear)
+        x, y, z = self._limits.clamp(command.linear)
         if not command.in_world:
             x, y = c * x - s * y, s * x + c * y
         lack = subtract((x, y, z), hardware.link.twist.linear)
@@ -206,7 +206,7 @@ class VelocityController(_OfQuadrotor):
         forward, left = c * ax + s * ay, c * ay - s * ax
         hardware.attitude = AttitudeCommand(
             -_arc_sine(left / _GRAVITY), _arc_sine(forward / _GRAVITY),
-            self._yaw_limits.clamped(command.yaw_rate),
+            self._yaw_limits.clamp(command.yaw_rate),
             hardware.link.inertial.mass * (az * self._load_factor() + _GRAVITY), command.stamp_ns)
 
     def _load_factor(self) -> float:
@@ -301,12 +301,12 @@ class AttitudeController(_OfQuadrotor):
                                 * self.hardware.link.inertial.mass * dt)
             return 0.0, 0.0, 0.0, self._sinking
         self._sinking = None
-        roll = self._roll_limits.clamped(command.roll)
-        pitch = self._pitch_limits.clamped(command.pitch)
+        roll = self._roll_limits.clamp(command.roll)
+        pitch = self._pitch_limits.clamp(command.pitch)
         tilt = math.hypot(roll, pitch)
         if tilt > self._most_tilt:
             roll, pitch = roll * self._most_tilt / tilt, pitch * self._most_tilt / tilt
-        return roll, pitch, self._yaw_limits.clamped(command.yaw_rate), command.thrust
+        return roll, pitch, self._yaw_limits.clamp(command.yaw_rate), command.thrust
 
 
 def _arc_sine(value: float) -> float:

@@ -46,7 +46,7 @@ class ScalarLimits(NamedTuple):
     least: float
     most: float
 
-    def clamped(self, value: float) -> float:
+    def clamp(self, value: float) -> float:
         return max(self.least, min(self.most, value))
 
 
@@ -65,8 +65,8 @@ class VectorLimits:
         self._most = s.number(f"{below}max", math.inf)
         self._most_across = s.number(f"{below}max_xy", math.inf)
 
-    def clamped(self, vector: Vec3) -> Vec3:
-        x, y, z = (limits.clamped(value) for limits, value in zip(self._axes, vector))
+    def clamp(self, vector: Vec3) -> Vec3:
+        x, y, z = (limits.clamp(value) for limits, value in zip(self._axes, vector))
         across = math.hypot(x, y)
         found: Vec3 = (x, y, z)
         if across > self._most_across:
@@ -150,7 +150,7 @@ class QuadrotorHardware(Hardware):
 
     def command(self, value: Wrench) -> None:
         """Apply a wrench, within the limits, to the body until the next call."""
-        force, torque = (limits.clamped(part) for limits, part in zip(self._limits, value))
+        force, torque = (limits.clamp(part) for limits, part in zip(self._limits, value))
         self._wrench = (force, torque)
 
     def _enable_asked(self, request: Any, response: Any) -> None:

@@ -21,7 +21,7 @@ class SpeedLimits:
     acceleration: Optional[Tuple[float, float]] = None
     jerk: Optional[Tuple[float, float]] = None
 
-    def limited(self, wanted: float, last: float, before: float, dt: float) -> float:
+    def limit(self, wanted: float, last: float, before: float, dt: float) -> float:
         """Return the velocity within the limits that is nearest to `wanted`.
 
         Args:

@@ -56,7 +56,7 @@ class JointGroup(HardwareJoint):
             for joint, share in self._parts:
                 joint.command(share(value))
 
-    def commanded(self, step: int, step_size: float) -> float:
+    def read_command(self, step: int, step_size: float) -> float:
         return self._value
 
     def hold(self) -> None:

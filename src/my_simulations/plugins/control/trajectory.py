@@ -118,7 +118,7 @@ class Tolerance(NamedTuple):
         return not (0.0 < self.position < abs(position_error)
                     or 0.0 < self.velocity < abs(velocity_error))
 
-    def updated(self, message: Any) -> "Tolerance":
+    def apply_message(self, message: Any) -> "Tolerance":
         """Apply a control_msgs/JointTolerance: 0 keeps a limit, a negative number removes it."""
         return Tolerance(*(old if new == 0.0 else max(0.0, float(new)) for old, new in zip(
             self, (message.position, message.velocity, message.acceleration))))
@@ -128,5 +128,5 @@ def update_tolerances(tolerances: Sequence[Tolerance], joints: Sequence[str],
                       messages: Sequence[Any]) -> List[Tolerance]:
     """Apply control_msgs/JointTolerance messages to the tolerances of joints."""
     said: Dict[str, Any] = {message.name: message for message in messages}
-    return [tolerance.updated(said[name]) if name in said else tolerance
+    return [tolerance.apply_message(said[name]) if name in said else tolerance
             for name, tolerance in zip(joints, tolerances)]

@@ -64,7 +64,7 @@ class Rotor(NamedTuple):
     torque: float = 0.0
     current: float = 0.0
 
-    def stepped(self, constants: MotorConstants, voltage: float, air: float, dt: float) -> "Rotor":
+    def advance(self, constants: MotorConstants, voltage: float, air: float, dt: float) -> "Rotor":
         """Return the state `dt` s later; `air` is the speed of the rotor along its axis, m/s.
 
         Source: hector_quadrotor_model, quadrotorPropulsion. Thrust F = CT0s w^2 + CT1s w v -+ CT2s
@@ -188,7 +188,7 @@ class QuadrotorPropulsion(Plugin):
         self._apply_commands()
         velocity, spin = (clamped_vector(one, MOST_VELOCITY) for one in body_twist(self._link))
         arm = self._constants.l_m
-        self._rotors = [rotor.stepped(self._constants, voltage, air, dt)
+        self._rotors = [rotor.advance(self._constants, voltage, air, dt)
                         for rotor, voltage, air in zip(self._rotors, self._voltages,
                                                        rotor_speeds_along(velocity, spin, arm))]
         wrench = wrench_of(self._rotors, arm)

@@ -53,7 +53,7 @@ class Skeleton:
         self._way = self._root_keys()
 
     def _borrow(self, movement: Movement, scale: float) -> None:
-        ours = self._figure.tree.paired(movement.tree)
+        ours = self._figure.tree.match_bones(movement.tree)
         for keys in movement.clip.keys:
             known = np.array([int(node) in ours for node in keys.nodes], dtype=bool)
             nodes = np.array([ours[int(node)] for node in keys.nodes[known]], dtype=np.int64)

@@ -146,7 +146,7 @@ class Renderer:
         Raises SensingError for a camera with impossible numbers.
         """
         check(spec, self._targets.most)
-        placed = self._scenery.extended(poses, ns)
+        placed = self._scenery.append_poses(poses, ns)
         drawn = self._kept.get((spec, outputs, frame.tobytes()),
                                (placed.tobytes(), self._scenery.forms(ns)),
                                lambda: self._seen(spec, frame, placed, outputs, ns))
@@ -160,8 +160,8 @@ class Renderer:
             self._wide[spec] = LensMap(spec, spec.lens)
         wide = self._wide[spec]
         check(wide.spec, self._targets.most)
-        return wide.composed([self._drawn(wide.spec, frame @ side.frame, poses, outputs, ns)
-                              for side in wide.sides])
+        return wide.compose_picture([self._drawn(wide.spec, frame @ side.frame, poses, outputs, ns)
+                                     for side in wide.sides])
 
     def _all(self) -> Iterator[Batch]:
         yield from self._batches.values()
@@ -169,7 +169,7 @@ class Renderer:
 
     def _drawn(self, spec: CameraSpec, frame: np.ndarray, poses: np.ndarray,
                outputs: Tuple[str, ...], ns: int) -> Drawn:
-        for part, rows in self._scenery.reshaped(ns):
+        for part, rows in self._scenery.take_reshaped_parts(ns):
             self._scenic[part].reshape(rows)
         view = _VIEW_FROM_SENSOR @ inverse(frame)
         links = matrices(poses)

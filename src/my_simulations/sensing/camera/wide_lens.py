@@ -65,7 +65,7 @@ class LensMap:
         self.sides: List[Side] = [Side(turn, rays, pixels, focal, side)
                                   for turn, pixels in zip(turns, found) if len(pixels)]
 
-    def composed(self, drawn: Sequence[Drawn]) -> Drawn:
+    def compose_picture(self, drawn: Sequence[Drawn]) -> Drawn:
         """Compose the picture; outside of the lens it is black, without label, with depth inf."""
         size = self._whole.width * self._whole.height
         shape = (self._whole.height, self._whole.width)

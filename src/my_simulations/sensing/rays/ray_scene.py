@@ -158,7 +158,7 @@ class RayScene:
 
     def _reshape(self, ns: int) -> bool:
         """Give scenery the shape that it has at a sim time; whether it had another."""
-        found = self._scenery.reshaped(ns)
+        found = self._scenery.take_reshaped_parts(ns)
         for part, rows in found:
             vertices = np.ascontiguousarray(rows[:, :3])
             self._embree.reshape(*self._surfaces[part], vertices)
@@ -203,7 +203,7 @@ class RayScene:
         if self._changed:
             self._index()
         reshaped = bool(self._scenic) and self._reshape(ns)
-        placed = self._scenery.extended(poses, ns)
+        placed = self._scenery.append_poses(poses, ns)
         if self._most_row < len(poses):
             now: Any = placed.take(self._rows, axis=0)
         else:
