@@ -202,7 +202,9 @@ class Runner:
             if answer.error:
                 break
             self._applied = answer.number
-        self._limit = self._sync.step_limit()   # some commands change it
+        # Some commands lower it. A higher one holds after the next reading of commands only: the
+        # host may have sent some before it raised the limit.
+        self._limit = min(self._limit, self._sync.step_limit())
         sequence = self._write(force=True) if show else self._words[LATEST]
         answers[:0] = [_Answer(number, self._step) for number in self._ended]
         self._ended.clear()

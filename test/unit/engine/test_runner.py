@@ -29,7 +29,15 @@ from my_simulations.engine.commands import (
     SetPhysics,
 )
 from my_simulations.engine.drive_commands import JointMotor, SetMotors
-from my_simulations.engine.ring import DEMAND_NS, HEARTBEAT, LATEST_POSES, POSE_DEMAND_NS
+from my_simulations.engine.ring import (
+    DEMAND_NS,
+    HEARTBEAT,
+    LATEST_POSES,
+    POSE_DEMAND_NS,
+    SETTINGS,
+    STEP_BUDGET,
+    budget_word,
+)
 from my_simulations.geometry import Pose, Twist
 from my_simulations.simulator.watchdog import _STALL_S
 
@@ -318,6 +326,36 @@ def test_motors_and_the_advance_that_follows_write_one_snapshot(engine):
     assert engine.post(SetMotors((JointMotor(0, 1.0, 5.0),)))
     assert ask(engine, Advance(0)).sequence == first + 1 == engine.ring.latest
     assert engine.ring.applied == engine.posted
+
+
+@pytest.mark.parametrize("request_of_steps", [Run(), Advance(1000)])
+def test_commands_sent_before_the_limit_was_raised_precede_the_steps(engine, request_of_steps):
+    """Also if another command arrives alone just before them."""
+    words, channel, backend = engine.ring.words, engine._channel, engine.backend
+    receive, step = channel.receive, backend.step
+    last_without = []
+
+    def receive_and_raise(timeout):
+        if not engine.posted and engine.ring.step >= 15:   # after bursts of 1, 2, 4 and 8
+            engine.submit(Ping())
+            found = receive(timeout)
+            engine.post(SetMotors((JointMotor(0, 1.0, 5.0),)))
+            words[STEP_BUDGET] = budget_word(settings, 1000)
+            return found
+        return receive(timeout)
+
+    def note_step(first, count):
+        if not backend.motors:
+            last_without.append(first + count)
+        step(first, count)
+
+    channel.receive, backend.step = receive_and_raise, note_step
+    ask(engine, SetPhysics(PhysicsSettings(rate=0.0)))
+    settings = words[SETTINGS] + 1   # those of a new engine
+    words[STEP_BUDGET] = budget_word(settings, 21)
+    engine.submit(request_of_steps)
+    until(lambda: engine.ring.step >= 500)
+    assert max(last_without) <= 21
 
 
 def test_an_advance_is_made_in_few_bursts(monkeypatch):
