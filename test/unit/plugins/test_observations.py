@@ -12,7 +12,7 @@ def test_a_record_that_arrives_after_the_last_subscriber_left_is_still_read():
     topic = SimpleNamespace(wanted=True)
     query = ReadEfforts((4, 5))
     observations = Observations()
-    owner = SimpleNamespace(observed=lambda reads: ((), (4, 5), (query,)),
+    owner = SimpleNamespace(list_observed=lambda reads: ((), (4, 5), (query,)),
                             observations=observations)
     one = observations.add(owner, Rate(1000.0), lambda: None, None, [topic], False, False,
                            Reads(efforts=("a", "b")))
