@@ -147,7 +147,7 @@ class Gaits {
 }
 
 /** An actor as it is drawn. */
-class Figure {
+export class Figure {
   group = new Group();
   path;
   #actor;
