@@ -123,7 +123,7 @@ def flooded(count, counts):
         good = 0
         for _ in range(count):
             done = connection._exactly(1)
-            answer = GetModelState._response_class().deserialize(connection._received())
+            answer = GetModelState._response_class().deserialize(connection._receive_bytes())
             good += done == b"\1" and answer.success
         sender.join()
         counts.append(good)
