@@ -15,9 +15,7 @@ The motor takes up the small moment of points that lag.
 """
 from __future__ import annotations
 
-from collections import deque
 from dataclasses import dataclass
-from itertools import starmap
 from math import dist
 from typing import AbstractSet, Any, Callable, Dict, Iterable, List, Optional, Set, Tuple
 
@@ -71,9 +69,6 @@ _PUSH = 2.0         # separation speed of overlaps / speed that gravity adds in 
 _HARD = 1e12        # N/m: so stiff that only the share counts
 _CHANGE = 0.1       # smaller relative changes of the share are not applied
 
-_Filter = Tuple[int, int, int, int]
-"""A link, by PyBullet's numbers of its body and itself, and its collision group and mask."""
-
 
 @dataclass
 class _Roller:
@@ -93,7 +88,7 @@ class _Roller:
     body: Body
     part: Part
     axis: Vec3
-    meets: _Filter
+    meets: collision_groups.Filter
     hard: bool
     joint_row: int = -1
     reach: float = 0.0
@@ -126,7 +121,7 @@ class RollingContacts(StepHelper):
         self._holding, self._cone = holding, True
         self.on_seams: Dict[LinkKey, Vec3] = {}
         self._rollers: Dict[LinkKey, _Roller] = {}
-        self._rolling: Dict[LinkKey, _Filter] = {}
+        self._rolling: Dict[LinkKey, collision_groups.Filter] = {}
         self._standing: Dict[int, Pose] = {}
         self._landed: Set[int] = set()   # in this step, and the bodies on which they land
         self._moving: Set[int] = set()
@@ -152,7 +147,7 @@ class RollingContacts(StepHelper):
             if axis is not None:
                 self._rollers[body.uid, part.index] = _Roller(
                     body, part, rotate(conjugate(part.link_from_com.orientation), axis),
-                    (body.uid, part.index, *collision_groups.moving(part.link)),
+                    collision_groups.moving(part.link),
                     part.link.collisions[0].surface.kp >= SOFT, rows.get(part.index, -1),
                     _LAG * total * _widest(part.link))
 
@@ -216,15 +211,23 @@ class RollingContacts(StepHelper):
             if (linear != _NONE or angular != _NONE) and _slow(linear, angular):
                 pybullet.resetBaseVelocity(uid, _NONE, _NONE)
         flies, landed = self._flies, self._landed
-        rolling = [each for each in self._rolling.values()
-                   if each[0] not in landed and not flies(each[0], step)]
+        rolling = [key for key in self._rolling
+                   if key[0] not in landed and not flies(key[0], step)]
         landed.clear()
         if self.on_seams:
-            _clear_contacts([each for each in rolling if each[:2] not in self.on_seams])
+            self._clear_contacts([key for key in rolling if key not in self.on_seams])
             if not self._moving.issubset({uid for uid, _ in self.on_seams}):
                 self._find_pairs()
-            rolling = [each for each in rolling if each[:2] in self.on_seams]
-        _clear_contacts(rolling)
+            rolling = [key for key in rolling if key in self.on_seams]
+        self._clear_contacts(rolling)
+
+    def _clear_contacts(self, links: Iterable[LinkKey]) -> None:
+        """Discard the contact points of links.
+
+        Bullet does so when a filter group is set, and finds new ones in the next step.
+        """
+        for key in links:
+            self._rolling[key].set(*key)
 
     def due(self, step: int) -> int:
         """Each step while a link rolls or is kept at rest, otherwise the step of the next check."""
@@ -316,14 +319,6 @@ class RollingContacts(StepHelper):
             at = Pose((x, y, at.position[2]), before.orientation)
             pybullet.resetBasePositionAndOrientation(uid, at.position, at.orientation)
         self._standing[uid] = at
-
-
-def _clear_contacts(links: Iterable[_Filter]) -> None:
-    """Discard the contact points of links.
-
-    Bullet does so when a filter group is set, and finds new ones in the next step.
-    """
-    deque(starmap(pybullet.setCollisionFilterGroupMask, links), maxlen=0)
 
 
 def _is_level(contacts: Tuple[Any, ...], gravity: Vec3) -> bool:
