@@ -220,13 +220,13 @@ class Registry:
 
         `joint::1` is the second axis. Models are searched in order. Raises UnknownEntityError.
         """
-        found = self._joints.get(name) or next(self._joints_named(name), None)
-        if found is None:
-            raise UnknownEntityError(f"unknown joint '{name}'" + self._nearest_joint(name))
         if name not in self._joints:
-            self._joints[name] = found
+            found = next(self._joints_named(name), None)
+            if found is None:
+                raise UnknownEntityError(f"unknown joint '{name}'" + self._nearest_joint(name))
             self._joint_taken(name, found[0])
-        return found
+            self._joints[name] = found
+        return self._joints[name]
 
     def _joints_named(self, name: str) -> Iterator[Tuple[Entity, Joint, int]]:
         """The joint of a scoped name first, then those of that plain name, in order of models."""
