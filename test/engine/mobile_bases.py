@@ -15,7 +15,6 @@ from my_simulations.description.shapes import Box, Collision, Cylinder, Sphere, 
 from my_simulations.engine.drive_commands import JointMotor, JointServo, SetMotors, SetServos
 from my_simulations.geometry import (
     Pose,
-    Quat,
     Vec3,
     conjugate,
     multiply,
@@ -35,13 +34,13 @@ class MobileBase:
     Attributes:
         model: stands on the ground at the origin, its front along x.
         rates: returns the rates of the driven wheels, rad/s, by joint, for a velocity ahead, m/s,
-            to the left, m/s, and a turn, rad/s.
+            and a turn, rad/s.
         steer: returns the positions of the steered joints, rad, for the same.
     """
 
     model: Model
-    rates: Callable[[float, float, float], Dict[str, float]]
-    steer: Callable[[float, float, float], Dict[str, float]]
+    rates: Callable[[float, float], Dict[str, float]]
+    steer: Callable[[float, float], Dict[str, float]]
 
 
 def _wheel(name: str, at: Vec3, radius: float, width: float, mass: float, mu: float,
@@ -52,7 +51,7 @@ def _wheel(name: str, at: Vec3, radius: float, width: float, mass: float, mu: fl
             Joint(f"{name}_joint", "revolute", parent, name, axis=JointAxis((0.0, 0.0, 1.0))))
 
 
-def _not_steered(ahead: float, left: float, turn: float) -> Dict[str, float]:
+def _not_steered(ahead: float, turn: float) -> Dict[str, float]:
     return {}
 
 
@@ -70,7 +69,7 @@ def differential(mu: float) -> MobileBase:
         links.append(link)
         joints.append(joint)
 
-    def rates(ahead: float, left: float, turn: float) -> Dict[str, float]:
+    def rates(ahead: float, turn: float) -> Dict[str, float]:
         return {"left_joint": (ahead - turn * aside) / radius,
                 "right_joint": (ahead + turn * aside) / radius}
     return MobileBase(Model("differential", links=links, joints=joints), rates, _not_steered)
@@ -109,7 +108,7 @@ def skid_steered(mu: float) -> MobileBase:
         links.append(link)
         joints.append(joint)
 
-    def rates(ahead: float, left: float, turn: float) -> Dict[str, float]:
+    def rates(ahead: float, turn: float) -> Dict[str, float]:
         return {f"{name}_joint": (ahead - y * turn * aside) / radius
                 for name, (_, y) in _CORNERS.items()}
     return MobileBase(Model("skid", links=links, joints=joints), rates, _not_steered)
@@ -137,11 +136,11 @@ def car(mu: float) -> MobileBase:
         links.append(link)
         joints.append(joint)
 
-    def rates(ahead: float, left: float, turn: float) -> Dict[str, float]:
+    def rates(ahead: float, turn: float) -> Dict[str, float]:
         return {f"{name}_joint": (ahead - y * turn * aside) / radius
                 for name, (x, y) in _CORNERS.items() if x < 0}
 
-    def steer(ahead: float, left: float, turn: float) -> Dict[str, float]:
+    def steer(ahead: float, turn: float) -> Dict[str, float]:
         return {f"{name}_steer": math.atan2(turn * ahead_of, ahead - y * turn * aside)
                 if turn else 0.0 for name, (x, y) in _CORNERS.items() if x > 0}
     return MobileBase(Model("car", links=links, joints=joints), rates, steer)
@@ -172,10 +171,10 @@ def mecanum(mu: float, rollers: int = 16, size: float = 0.04) -> MobileBase:
             joints.append(Joint(f"{name}_roller_{n}", "revolute", name, f"{name}_{n}",
                                 axis=JointAxis(tuple(math.sqrt(0.5) * part for part in axis))))
 
-    def rates(ahead: float, left: float, turn: float) -> Dict[str, float]:
+    def rates(ahead: float, turn: float) -> Dict[str, float]:
         # A ball does not slip along its axis (1, -x y).
-        return {f"{name}_joint": (ahead - x * y * left - y * turn * (front + aside)) / radius
-                for name, (x, y) in _CORNERS.items()}
+        return {f"{name}_joint": (ahead - y * turn * (front + aside)) / radius
+                for name, (_, y) in _CORNERS.items()}
     return MobileBase(Model("mecanum", links=links, joints=joints), rates, _not_steered)
 
 
@@ -200,33 +199,23 @@ class OnSlope:
                  ) -> None:
         self.lab, self.base = lab, base
         self.tilt = quat_from_rpy(0.0, -math.radians(degrees), 0.0)
-        self.middle = rotate(self.tilt, (0.0, 0.0, -0.5))
-        lab.load(slab("slope", (100.0, 100.0, 1.0)), self.middle, self.tilt)
-        turned = quat_from_rpy(0.0, 0.0, heading)
-        self.number = self.load(base.model, (0.0, 0.0, 0.0), turned)
+        lab.load(slab("slope", (100.0, 100.0, 1.0)), rotate(self.tilt, (0.0, 0.0, -0.5)), self.tilt)
+        self.number = lab.load(base.model, orientation=multiply(
+            self.tilt, quat_from_rpy(0.0, 0.0, heading)))
 
-    def load(self, model: Model, at: Vec3, orientation: Quat = (0.0, 0.0, 0.0, 1.0)) -> int:
-        """Load a model at a place on the slope."""
-        return self.lab.load(model, rotate(self.tilt, at), multiply(self.tilt, orientation))
-
-    def drive(self, ahead: float, left: float = 0.0, turn: float = 0.0) -> None:
-        """Drive at a velocity ahead and to the left, m/s, and a turn, rad/s."""
+    def drive(self, ahead: float, turn: float = 0.0) -> None:
+        """Drive at a velocity ahead, m/s, and a turn, rad/s."""
         rows = self.lab.joint_rows
-        angles = self.base.steer(ahead, left, turn)
+        angles = self.base.steer(ahead, turn)
         if angles:
             self.lab.apply(SetServos(tuple(JointServo(rows[self.number, name], "position", angle)
                                            for name, angle in angles.items())))
         self.lab.apply(SetMotors(tuple(JointMotor(rows[self.number, name], rate, EFFORT)
-                                       for name, rate in self.base.rates(ahead, left, turn).items()
-                                       )))
+                                       for name, rate in self.base.rates(ahead, turn).items())))
 
-    def place(self, number: int = 0) -> Tuple[float, float, float]:
-        """Where a model is on the slope: x, y, m, and heading, rad."""
-        pose = self.lab.pose(number or self.number, "link")
+    def place(self) -> Tuple[float, float, float]:
+        """Where the base is on the slope: x, y, m, and heading, rad."""
+        pose = self.lab.pose(self.number, "link")
         x, y, _ = rotate(conjugate(self.tilt), pose.position)
         ahead = rotate(conjugate(self.tilt), rotate(pose.orientation, (1.0, 0.0, 0.0)))
         return x, y, math.atan2(ahead[1], ahead[0])
-
-    def velocity(self) -> Vec3:
-        """Of the base's first link, in the frame of the slope, m/s."""
-        return rotate(conjugate(self.tilt), self.lab.twist(self.number, "link").linear)

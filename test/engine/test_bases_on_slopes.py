@@ -72,7 +72,7 @@ def test_a_base_turns_on_a_slope(laws: Laws, kind: str, degrees: float, heading:
         slope = OnSlope(lab, KINDS[kind](1.0), degrees, heading)
         slope.drive(0.0)
         lab.seconds(0.5)
-        slope.drive(ahead, 0.0, turn)
+        slope.drive(ahead, turn)
         lab.seconds(0.5)
         x, y, begin = slope.place()
         lab.seconds(seconds)
