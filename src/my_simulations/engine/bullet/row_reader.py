@@ -5,18 +5,15 @@ a few rows. They are the same to the bit.
 """
 from __future__ import annotations
 
-import struct
+from itertools import chain
 from typing import Dict, List, Tuple
 
 import pybullet
 
-from ...geometry import Vec3, cross
-from ..ring import LINK_WIDTH
 from .bodies import Axis, Body, Part
+from .link_rows import ROW, link_row
 from .link_states import Motion, motion
 from .state_readout import StateReadout
-
-_ROW = struct.Struct(f"={LINK_WIDTH}d")
 
 
 class RowReader:
@@ -52,23 +49,7 @@ class RowReader:
     def _packed(self, row: int, now: Motion) -> bytes:
         """The row of a link by its centre of mass, as `StateReadout` computes it."""
         offset = self._readout.offset(row)
-        if offset is None:
-            return _ROW.pack(*now.position, *now.orientation, *now.linear, *now.angular)
-        (px, py, pz), (rx, ry, rz, rw) = offset
-        x, y, z, w = now.orientation
-        u: Vec3 = (x, y, z)
-        tx, ty, tz = cross(u, (px, py, pz))
-        t: Vec3 = (2.0 * tx, 2.0 * ty, 2.0 * tz)
-        ux, uy, uz = cross(u, t)
-        lever: Vec3 = (px + w * t[0] + ux, py + w * t[1] + uy, pz + w * t[2] + uz)
-        at, linear, angular = now.position, now.linear, now.angular
-        vx, vy, vz = cross(angular, lever)
-        cx, cy, cz = cross(u, (rx, ry, rz))
-        return _ROW.pack(
-            at[0] + lever[0], at[1] + lever[1], at[2] + lever[2],
-            w * rx + rw * x + cx, w * ry + rw * y + cy, w * rz + rw * z + cz,
-            w * rw - (x * rx + y * ry + z * rz),
-            linear[0] + vx, linear[1] + vy, linear[2] + vz, *angular)
+        return ROW.pack(*chain(*now)) if offset is None else ROW.pack(*link_row(*now, offset))
 
     def read_axes(self, rows: Tuple[int, ...]) -> List[float]:
         """Position and rate of joint axes, one after the other; zeros where there is none."""

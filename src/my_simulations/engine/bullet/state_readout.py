@@ -8,6 +8,7 @@ can touch. It is repeated after the moving body has covered the margin.
 from __future__ import annotations
 
 import struct
+from itertools import chain
 from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
@@ -19,13 +20,12 @@ from ..ring import JOINT_WIDTH, JOINTS, LINK_WIDTH, LINKS
 from .bodies import FASTEST_RATE, Body
 from .body_events import ACTUATED, COMMANDED, BodyEvent, BodyObserver
 from .closing_joints import ClosingJoint
+from .link_rows import ROW, link_row, place_row
 from .link_states import motion, motions
 
-_ROW = struct.Struct("=13d")
 _PLACE = struct.Struct("=7d")
 _AXIS = struct.Struct("=2d")
-_ROW_BYTES = _ROW.size
-_YZX, _ZXY = [1, 2, 0], [2, 0, 1]
+_ROW_BYTES = ROW.size
 _NO_VELOCITY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 _pose_of = pybullet.getBasePositionAndOrientation
 _velocity_of = pybullet.getBaseVelocity
@@ -62,8 +62,6 @@ class StateReadout(BodyObserver):
         self._resting: Dict[int, Body] = {}
         self._guards: Dict[int, Tuple[Tuple[float, float, float], Set[int]]] = {}
         self._offsets: Dict[int, Pose] = {}
-        self._asked: List[int] = []
-        self._answer = (np.zeros(0, int), np.zeros((0, 3)), np.zeros((0, 4)))
         self._patrol: List[int] = []
         self._touched: Dict[int, Body] = {}
         self._stepped = False
@@ -86,7 +84,6 @@ class StateReadout(BodyObserver):
             self._closing.pop(row, None)
 
     def add(self, body: Body) -> None:
-        self._asked = []
         for part in body.parts:
             self.used_links = max(self.used_links, part.row + 1)
             if part.link_from_com != IDENTITY:
@@ -158,21 +155,18 @@ class StateReadout(BodyObserver):
             self._stepped = False
             return
         self._changed = True
-        offset_rows: List[int] = []
-        self._read_all(list(rigid.values()), offset_rows)
-        self._read_rest(trees, offset_rows)
+        self._read_all(list(rigid.values()))
+        self._read_rest(trees)
         for one in self._closing.values():
             one.read(self.links, self.joints)
         self._stepped = False
 
-    def _read_rest(self, trees: Dict[int, Body], offset_rows: List[int]) -> None:
-        """Read trees and bodies that may have been woken; convert all rows to link frames."""
+    def _read_rest(self, trees: Dict[int, Body]) -> None:
+        """Read trees and bodies that may have been woken."""
         for body in list(trees.values()):
-            self._read_tree(body, offset_rows)
+            self._read_tree(body)
         if self._resting and self._stepped:
-            self._read_touched(offset_rows)
-        if offset_rows:
-            self._to_link_frames(offset_rows)
+            self._read_touched()
 
     def read_poses(self) -> bool:
         """Update poses only; twists of rigid bodies stay those of the last `read`.
@@ -181,14 +175,11 @@ class StateReadout(BodyObserver):
         """
         if not self._stepped and not self._touched:
             return self._changed
-        places: List[int] = []
-        self._read_places(list(self._awake.values()), places)
-        if places:
-            self._to_link_frames(places, twists=False)
-        self._read_rest(self._trees, [])
+        self._read_places(list(self._awake.values()))
+        self._read_rest(self._trees)
         return True
 
-    def _read_places(self, todo: List[Body], offset_rows: List[int]) -> None:
+    def _read_places(self, todo: List[Body]) -> None:
         """The poses of rigid bodies, and of those found moving because of them, and so on."""
         pack, table = _PLACE.pack_into, self._link_bytes
         offsets, resting = self._offsets, self._resting
@@ -202,19 +193,21 @@ class StateReadout(BodyObserver):
                 if total - total != 0.0:
                     self._diverged(body)
                     continue
-                pack(table, row * _ROW_BYTES, x, y, z, *turn)
-                if row in offsets:
-                    offset_rows.append(row)
+                offset = offsets.get(row)
+                if offset is None:
+                    pack(table, row * _ROW_BYTES, x, y, z, *turn)
+                else:
+                    pack(table, row * _ROW_BYTES, *place_row(position, turn, offset)[0])
                 if resting and not body.still:
                     woken.extend(self._touched_by(body.uid, position, body.radius))
             todo = woken
 
-    def _read_all(self, todo: List[Body], offset_rows: List[int]) -> None:
+    def _read_all(self, todo: List[Body]) -> None:
         """Read rigid bodies, the resting bodies that they touch, and so on.
 
         One loop without calls: it takes most of the time of a snapshot of many bodies.
         """
-        pack, table = _ROW.pack_into, self._link_bytes
+        pack, table = ROW.pack_into, self._link_bytes
         offsets, resting = self._offsets, self._resting
         while todo:
             woken: List[Body] = []
@@ -227,9 +220,12 @@ class StateReadout(BodyObserver):
                 if total - total != 0.0:
                     self._diverged(body)
                     continue
-                pack(table, row * _ROW_BYTES, x, y, z, *turn, vx, vy, vz, wx, wy, wz)
-                if row in offsets:
-                    offset_rows.append(row)
+                offset = offsets.get(row)
+                if offset is None:
+                    pack(table, row * _ROW_BYTES, x, y, z, *turn, vx, vy, vz, wx, wy, wz)
+                else:
+                    pack(table, row * _ROW_BYTES,
+                         *link_row(position, turn, linear, angular, offset))
                 if vz == 0.0 and (linear, angular) == _NO_VELOCITY and body.seen_at == position:
                     self._stands(body)
                     continue
@@ -275,7 +271,7 @@ class StateReadout(BodyObserver):
                 woken.append(body)
         return woken
 
-    def _read_touched(self, offset_rows: List[int]) -> None:
+    def _read_touched(self) -> None:
         """Read bodies that trees may have touched, and a few resting bodies in any case."""
         woken: List[Body] = []
         for uid, tree in self._trees.items():
@@ -287,9 +283,9 @@ class StateReadout(BodyObserver):
         if not self._patrol:
             self._patrol = list(self._resting)
         turn, self._patrol = set(self._patrol[:_ROUND_ROBIN]), self._patrol[_ROUND_ROBIN:]
-        self._read_all(woken + self._wake_moving(turn), offset_rows)
+        self._read_all(woken + self._wake_moving(turn))
 
-    def _read_tree(self, body: Body, offset_rows: List[int]) -> None:
+    def _read_tree(self, body: Body) -> None:
         uid, links = body.uid, self._link_bytes
         hung = body.parts if body.base is None else body.parts[1:]
         found = motions(uid, [part.index for part in hung])
@@ -310,41 +306,11 @@ class StateReadout(BodyObserver):
         if fastest >= FASTEST_RATE:
             self._raced(body)
         for part, one in zip(body.parts, found):
-            _ROW.pack_into(links, part.row * _ROW.size, *one.position, *one.orientation,
-                           *one.linear, *one.angular)
+            offset = self._offsets.get(part.row)
+            row = chain(*one) if offset is None else link_row(*one, offset)
+            ROW.pack_into(links, part.row * _ROW_BYTES, *row)
         for axis, state in zip(body.axes, states):
             _AXIS.pack_into(self._joint_bytes, axis.row * _AXIS.size, state[0], state[1])
-        offset_rows.extend(part.row for part in body.parts if part.row in self._offsets)
-
-    def _to_link_frames(self, rows: List[int], twists: bool = True) -> None:
-        """Rows hold centres of mass; turn them into link frames: x += R p, v += w x R p.
-
-        Without `twists` only the poses: the twists are those of the link frames already.
-        """
-        index, p, r = self._offsets_of(rows)
-        values = self.links[index]
-        q = values[:, 3:7].copy()
-        u, w = q[:, :3], q[:, 3:4]
-        t = 2.0 * _cross(u, p)
-        lever = p + w * t + _cross(u, t)
-        values[:, 0:3] += lever
-        if twists:
-            values[:, 7:10] += _cross(values[:, 10:13], lever)
-        values[:, 3:6] = w * r[:, :3] + r[:, 3:4] * u + _cross(u, r[:, :3])
-        values[:, 6] = w[:, 0] * r[:, 3] - (u * r[:, :3]).sum(axis=1)
-        self.links[index] = values
-
-    def _offsets_of(self, rows: List[int]) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Row numbers, positions (n, 3) and quaternions (n, 4) of the link frames.
-
-        Most often they are those of the read-out before.
-        """
-        if rows != self._asked:
-            offsets = [self._offsets[row] for row in rows]
-            self._asked = rows
-            self._answer = (np.array(rows), np.array([each.position for each in offsets]),
-                            np.array([each.orientation for each in offsets]))
-        return self._answer
 
     def may_have_moved(self, body: Body) -> bool:
         """Whether a body may be elsewhere than its rows say."""
@@ -360,11 +326,5 @@ class StateReadout(BodyObserver):
 
     def tables(self) -> Tuple[memoryview, memoryview]:
         """The used rows as raw bytes, for the ring."""
-        return (self._link_bytes[:self.used_links * _ROW.size],
+        return (self._link_bytes[:self.used_links * _ROW_BYTES],
                 self._joint_bytes[:self.used_joints * _AXIS.size])
-
-
-def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """The cross products of the rows; numpy's own takes eight times as long for a few."""
-    found: np.ndarray = a[:, _YZX] * b[:, _ZXY] - a[:, _ZXY] * b[:, _YZX]
-    return found
