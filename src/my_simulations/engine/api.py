@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from concurrent.futures import Future
 from dataclasses import dataclass
-from typing import Callable, List, Protocol, Tuple
+from typing import Callable, List, Optional, Protocol, Tuple
 
 from ..errors import SimulationError
 from .commands import Command, PhysicsSettings
@@ -64,9 +64,10 @@ class Engine(Protocol):
     def submit(self, command: Command) -> "Future[Reply]":
         """Queue a command. The future fails with `EngineDiedError` if the engine dies before."""
 
-    def post(self, command: Command) -> bool:
+    def post(self, command: Command, at_once: bool = True) -> bool:
         """Queue `SetModelState` or `SetMotors` without a reply, in order with those of `submit`.
 
+        Without `at_once` it is sent with whatever is sent next: one message wakes the engine once.
         False if it was not queued: the engine died, or `MOST_POSTED` posted commands wait already.
         """
 
@@ -74,8 +75,14 @@ class Engine(Protocol):
     def posted(self) -> int:
         """Number of the last posted command; snapshots show it if `ring.applied` is not less."""
 
-    def notify(self) -> None:
-        """Notify an engine that waits for the host that the step budget is another."""
+    def send_posted(self) -> None:
+        """Send what was posted and not sent at once."""
+
+    def notify(self, budget: Optional[int] = None) -> None:
+        """Wake an engine that waits for the host; `budget` replaces the step budget of the ring.
+
+        The engine has what was posted before it has the budget.
+        """
 
     def notify_host(self) -> None:
         """End a `wait_for_notice`, from any thread."""

@@ -374,6 +374,13 @@ class Synchronize(Command):
 
 
 @dataclass(frozen=True)
+class SetStepBudget(Command):
+    """Replace the step budget of the ring by `word`; see `ring.budget_word`. It has no reply."""
+
+    word: int
+
+
+@dataclass(frozen=True)
 class Post(Command):
     """Apply a command without a reply; a rejection is reported by the event `refused`."""
 

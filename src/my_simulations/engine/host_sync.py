@@ -4,7 +4,15 @@ from __future__ import annotations
 import time
 from typing import Callable
 
-from .commands import Clear, Command, LoadModel, RemoveModel, Restart, Synchronize
+from .commands import (
+    Clear,
+    Command,
+    LoadModel,
+    RemoveModel,
+    Restart,
+    SetStepBudget,
+    Synchronize,
+)
 from .memory_fence import fence
 from .ring import SETTINGS, STEP_BUDGET, WAITS_AT, WAITS_FOR_ROOM, Clock, RingWriter
 from .step_records import RecordSource, RecordWriter, SetRecordRules
@@ -46,6 +54,8 @@ class HostSync:
             self.records.set_rules(command.rules, step, clock)
         elif isinstance(command, Synchronize):
             self.change_settings(step)
+        elif isinstance(command, SetStepBudget):
+            self._words[STEP_BUDGET] = command.word
         else:
             return False
         return True

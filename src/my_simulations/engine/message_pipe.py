@@ -12,7 +12,6 @@ from ..readable import wait_until_readable
 _LENGTH = struct.Struct("=Q")
 _CHUNK = 1 << 18
 _LONGEST = 1 << 32
-_NOTICE = _LENGTH.pack(0)
 
 
 class Wire:
@@ -30,22 +29,31 @@ class Wire:
         # made then does not block, in the child neither: what does not fit at once would be lost.
         sock.settimeout(None)
         self._pending = bytearray()
+        self._held = b""
+
+    def hold(self, message: object) -> None:
+        """Keep a message until the next `send` or `send_held`: the other side wakes up once."""
+        self._held += _packed(message)
 
     def send(self, message: object) -> None:
-        """Send a message completely. Raises OSError if the other side is closed."""
-        body = pickle.dumps(message, protocol=pickle.HIGHEST_PROTOCOL)
-        try:
-            self.sock.sendall(_LENGTH.pack(len(body)) + body)
-        except OSError:
-            self.shut_down()  # a part may have left: nothing that follows could be read
-            raise
-
-    def notify(self) -> None:
-        """Wake the other side without a message; its `receive` returns number 0.
+        """Send a message completely, after those that are kept.
 
         Raises OSError if the other side is closed.
         """
-        self.sock.sendall(_NOTICE)
+        self._send(_packed(message))
+
+    def send_held(self) -> None:
+        """Send the messages that are kept. Raises OSError if the other side is closed."""
+        if self._held:
+            self._send(b"")
+
+    def _send(self, packed: bytes) -> None:
+        held, self._held = self._held, b""
+        try:
+            self.sock.sendall(held + packed)
+        except OSError:
+            self.shut_down()  # a part may have left: nothing that follows could be read
+            raise
 
     def shut_down(self) -> None:
         """Shut the connection down: both sides read its end."""
@@ -85,10 +93,6 @@ class Wire:
             end = at + _LENGTH.size + length
             if len(self._pending) < end:
                 break
-            if not length:
-                found.append((0, None))
-                at = end
-                continue
             try:
                 found.append(pickle.loads(memoryview(self._pending)[at + _LENGTH.size:end]))
             except Exception as fault:  # pickle raises what the bytes make it
@@ -97,3 +101,8 @@ class Wire:
         if at:
             self._pending = self._pending[at:]
         return found
+
+
+def _packed(message: object) -> bytes:
+    body = pickle.dumps(message, protocol=pickle.HIGHEST_PROTOCOL)
+    return _LENGTH.pack(len(body)) + body

@@ -20,7 +20,15 @@ from ..child_process import (
 )
 from . import ring as ring_module
 from .api import MOST_POSTED, EngineDiedError, EngineNotRunningError, Event, Reply
-from .commands import Command, Post, SetJoints, SetLinkState, SetModelState
+from .commands import (
+    Command,
+    Ping,
+    Post,
+    SetJoints,
+    SetLinkState,
+    SetModelState,
+    SetStepBudget,
+)
 from .message_pipe import Wire
 from .ring import RingReader
 from .scratch_folder import remove_stale_folders
@@ -139,7 +147,7 @@ class ProcessEngine:
                 raise
         return future
 
-    def post(self, command: Command) -> bool:
+    def post(self, command: Command, at_once: bool = True) -> bool:
         with self._send_lock:
             with self._lock:
                 wire = self._wire
@@ -148,24 +156,34 @@ class ProcessEngine:
                 self._numbers += 1
                 number, post = self._numbers, Post(command)
                 self._posts.add(number, post)
+            message = (number, command.plain() if isinstance(command, SetModelState) else post)
+            if not at_once:
+                wire.hold(message)
+                return True
             try:
-                wire.send((number, command.plain() if isinstance(command, SetModelState)
-                           else post))
+                wire.send(message)
             except OSError as fault:
                 # The reader thread sees the same end, and reports the command as lost.
                 _log.debug("the engine does not listen: %s", fault)
         return True
 
+    def send_posted(self) -> None:
+        self._use_wire(Wire.send_held)
+
     @property
     def posted(self) -> int:
         return self._posts.last
 
-    def notify(self) -> None:
+    def notify(self, budget: Optional[int] = None) -> None:
+        command = Ping() if budget is None else SetStepBudget(budget)
+        self._use_wire(lambda wire: wire.send((0, command)))
+
+    def _use_wire(self, send: Callable[[Wire], None]) -> None:
         with self._send_lock:
             wire = self._wire
             if wire is not None:
                 try:
-                    wire.notify()
+                    send(wire)
                 except OSError as fault:
                     _log.debug("the engine does not listen: %s", fault)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 import traceback
-from typing import List, NamedTuple, Optional, Set, Tuple
+from typing import List, NamedTuple, Optional, Sequence, Set, Tuple
 
 from .api import (
     Backend,
@@ -155,7 +155,7 @@ class Runner:
         received = self._channel.receive(timeout)
         if not received:
             return False
-        commands = [self._unwrapped(*pair) for pair in received if pair[0] > 0]
+        commands = self._numbered(received)
         if not commands:   # only a notification
             return True
         answers: List[_Answer] = []
@@ -217,12 +217,21 @@ class Runner:
         self._posted.clear()
         self._report_events()
 
-    def _unwrapped(self, number: int, command: Command) -> Tuple[int, Command]:
-        """A command with its number; remembers those to which there is no reply."""
-        if isinstance(command, Post):
-            self._posted.add(number)
-            return number, command.command
-        return number, command
+    def _numbered(self, received: Sequence[Tuple[int, Command]]) -> List[Tuple[int, Command]]:
+        """Commands with their numbers; remembers those to which there is no reply.
+
+        Those of number 0, with which the host wakes the engine, are applied at once.
+        """
+        commands = []
+        for number, command in received:
+            if number == 0:
+                self._sync.apply_own_command(command, self._step, self._clock)
+            elif isinstance(command, Post):
+                self._posted.add(number)
+                commands.append((number, command.command))
+            else:
+                commands.append((number, command))
+        return commands
 
     def _await_replacement(self, number: int, error: str) -> None:
         """Report a command that changed only a part of the world, and do nothing more.

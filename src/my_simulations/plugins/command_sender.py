@@ -23,7 +23,9 @@ def send_commands(simulator: Simulator, contexts: Sequence[SimulatedContext],
         servos += commands.servos.values()
         if commands.planar is not None:
             planar.append(commands.planar)
-    if (motors or servos or planar) and not simulator.drives.set(motors, planar, revision, servos):
+    # The turn ends with a message that lets the engine go on.
+    if (motors or servos or planar) and not simulator.drives.set(
+            motors, planar, revision, servos, at_once=False):
         return False
     for context in contexts:
         context.commands.motors.clear()

@@ -70,7 +70,7 @@ class Drives:
 
     def set(self, motors: Sequence[JointMotor] = (),
             planar: Sequence[PlanarVelocity] = (), revision: Optional[int] = None,
-            servos: Sequence[JointServo] = ()) -> bool:
+            servos: Sequence[JointServo] = (), at_once: bool = True) -> bool:
         """Set motors and servos by joint row, planar velocities by model id; others stay.
 
         Motors alone are not waited for: the engine has them before all that is called afterwards,
@@ -81,6 +81,7 @@ class Drives:
             planar: planar velocities by model id, m/s and rad/s.
             revision: `Models.revision` when the rows were looked up.
             servos: joint servos by row; one with an empty `drive` ends the servo.
+            at_once: False to send motors with the next message, if no step precedes that.
 
         Returns:
             False if the models have changed since then; nothing is set.
@@ -104,7 +105,8 @@ class Drives:
             if not commands:
                 return True
             command = Batch(tuple(commands)) if len(commands) > 1 else commands[0]
-            if not (isinstance(command, SetMotors) and self._session.supervisor.post(command)):
+            if not (isinstance(command, SetMotors)
+                    and self._session.supervisor.post(command, at_once)):
                 self._session.call(command)
             self._motors.update({motor.row: motor for motor in new})
             self._planar.update(moved)
@@ -141,7 +143,8 @@ class Drives:
             ended = [JointServo(motor.row, "") for motor in motors if motor.row in self._servos]
             if ended:
                 self.set(servos=ended)
-            self.set(motors)
+            # A paused world goes on with another message, which takes the motors along.
+            self.set(motors, at_once=self._session.ring.running)
 
     def hold_axes(self, positions: Mapping[str, Tuple[float, float, float]]) -> None:
         """Move axes, given by name, to positions in one command and hold them there.

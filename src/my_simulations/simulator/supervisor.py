@@ -143,13 +143,13 @@ class Supervisor:
                 raise CommandError(reply.error)
             return reply
 
-    def post(self, command: Command) -> bool:
+    def post(self, command: Command, at_once: bool = True) -> bool:
         """Send a command without waiting for the reply, if possible; see `Engine.post`.
 
         `await_posted` waits until snapshots show its effect.
         """
         engine = self._engine
-        return engine is not None and self._ready.is_set() and engine.post(command)
+        return engine is not None and self._ready.is_set() and engine.post(command, at_once)
 
     def await_posted(self) -> None:
         """Wait until snapshots show the effect of all posted commands.

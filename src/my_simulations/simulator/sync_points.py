@@ -55,6 +55,7 @@ class SyncPoints:
         self._attached = False
         self._lock = threading.Lock()
         self._records: Optional[RecordReader] = None
+        self._budget = 0   # the last one, as in the ring once the engine has taken it
 
     @property
     def records(self) -> RecordReader:
@@ -93,7 +94,7 @@ class SyncPoints:
         self._session.before_advance = before_advance
         ring = self._session.ring
         ring.words[STEP_BUDGET] = budget_word(self.settings, ring.step)
-        self._session.supervisor.engine.notify()
+        self._session.supervisor.engine.notify(ring.words[STEP_BUDGET])
 
     def on_plugins(self, call: Callable[[], None]) -> None:
         """Call a function, in any thread, before a model with plugins comes into the world.
@@ -111,15 +112,25 @@ class SyncPoints:
             self._attached = False
         self._session.before_advance = do_nothing
         self._session.ring.words[STEP_BUDGET] = 0
-        self._session.supervisor.engine.notify()
+        self._session.supervisor.engine.notify(0)
 
     def allow(self, settings: int, step: Optional[int]) -> None:
-        """Let the engine run to `step` while `settings` are the world's; None for no limit."""
-        words = self._session.ring.words
-        words[STEP_BUDGET] = budget_word(settings, NO_LIMIT >> 17 if step is None else step)
-        fence()   # else the engine could begin to wait between the two, and not be notified
-        if words[WAITS_AT]:
-            self._session.supervisor.engine.notify()
+        """Let the engine run to `step` while `settings` are the world's; None for no limit.
+
+        It has all commands that were posted before. An engine that waits, or has not taken the
+        last budget that was sent, gets commands and budget in one message.
+        """
+        words, engine = self._session.ring.words, self._session.supervisor.engine
+        word = budget_word(settings, NO_LIMIT >> 17 if step is None else step)
+        if words[WAITS_AT] or words[STEP_BUDGET] != self._budget:
+            engine.notify(word)
+        else:
+            engine.send_posted()
+            words[STEP_BUDGET] = word
+            fence()   # else the engine could begin to wait between the two, and not be notified
+            if words[WAITS_AT]:
+                engine.notify(word)
+        self._budget = word
 
     def set_rules(self, rules: Sequence[RecordRule]) -> None:
         """Set what the engine records, instead of all earlier rules. Raises CommandError."""

@@ -56,6 +56,21 @@ def test_a_message_larger_than_the_socket_holds_arrives_whole(two_ends):
     assert [(number, len(body)) for number, body in found] == [(n, len(LARGE)) for n in range(3)]
 
 
+def test_kept_messages_arrive_with_the_next_one(two_ends):
+    ours, child = (Wire(end) for end in two_ends)
+    child.hold(1)
+    child.hold(2)
+    assert ours.receive(0.0) == []
+    child.send(3)
+    child.send(4)
+    assert ours.receive(30.0) == [1, 2, 3, 4]
+    child.send_held()
+    assert ours.receive(0.0) == []
+    child.hold(5)
+    child.send_held()
+    assert ours.receive(30.0) == [5]
+
+
 def test_a_stream_that_holds_no_message_ends(two_ends):
     ours, child = two_ends
     child.sendall(struct.pack("=Q", 4) + b"\xff\xff\xff\xff")

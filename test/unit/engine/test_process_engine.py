@@ -7,9 +7,11 @@ import socket
 import threading
 
 import pytest
+from waiting import until
 
 from my_simulations.engine.api import Reply
-from my_simulations.engine.commands import Ping
+from my_simulations.engine.commands import Ping, Post, SetStepBudget
+from my_simulations.engine.drive_commands import JointMotor, SetMotors
 from my_simulations.engine.message_pipe import Wire
 from my_simulations.engine.process_engine import ProcessEngine
 from my_simulations.engine.timed_forces import ClearTimedForces
@@ -98,3 +100,24 @@ def test_of_several_commands_only_the_first_is_suspected_of_a_death(engine):
     assert len(told) == 1 and len(told[0]) == 2
     # A sender that finds no engine comes after the listener.
     assert not engine.submit(Ping()).exception(WAIT).is_suspect
+
+
+def test_posted_commands_arrive_with_the_budget_that_follows(engine):
+    motors = SetMotors((JointMotor(0, 1.0, 5.0),))
+    assert engine.post(motors, at_once=False)
+    assert engine.theirs.receive(0.0) == []
+    engine.notify(7)
+    assert engine.theirs.receive(WAIT) == [(1, Post(motors)), (0, SetStepBudget(7))]
+    assert engine.post(motors, at_once=False)
+    engine.send_posted()
+    assert engine.theirs.receive(WAIT) == [(2, Post(motors))]
+
+
+def test_posted_commands_that_were_not_sent_are_reported_at_a_death(engine):
+    told = []
+    engine.on_death(lambda reason, commands: told.append(commands) or True)
+    motors = SetMotors((JointMotor(0, 1.0, 5.0),))
+    assert engine.post(motors, at_once=False)
+    engine.theirs.shut_down()
+    until(lambda: told)
+    assert told == [[Post(motors)]]

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import struct
 import threading
+from types import SimpleNamespace
 
 import pytest
 from inline_engine import InlineEngine
@@ -12,12 +13,12 @@ from my_simulations.description.model import Inertial, Joint, JointAxis, Link, M
 from my_simulations.description.world import World
 from my_simulations.engine.drive_commands import JointMotor
 from my_simulations.engine.rates import Rate
-from my_simulations.engine.ring import RECORDS
+from my_simulations.engine.ring import RECORDS, STEP_BUDGET, WAITS_AT, budget_word
 from my_simulations.engine.step_records import RecordRule
 from my_simulations.errors import CommandError
 from my_simulations.geometry import Pose
 from my_simulations.simulator.simulator import Simulator
-from my_simulations.simulator.sync_points import SimTimeStep
+from my_simulations.simulator.sync_points import SimTimeStep, SyncPoints
 
 WAIT = 60.0
 
@@ -246,3 +247,50 @@ def test_the_rows_of_all_links_are_recorded_once_for_all_rules(simulator):
     seen = struct.unpack("=3d", record.world()[:24])
     host.end()
     assert seen == (1.0, 2.0, 3.0) and len(record.world()) == 2 * 13 * 8
+
+
+class Engine:
+    """Notes what it is sent; takes a budget from `sent` only when a test says so."""
+
+    def __init__(self, words):
+        self.words, self.sent = words, []
+
+    def send_posted(self):
+        self.sent.append("posted")
+
+    def notify(self, budget=None):
+        self.sent.append(budget)
+
+
+@pytest.fixture
+def host():
+    words = [0] * (STEP_BUDGET + 1)
+    engine = Engine(words)
+    session = SimpleNamespace(ring=SimpleNamespace(words=words),
+                              supervisor=SimpleNamespace(engine=engine))
+    return SyncPoints(session), words, engine.sent
+
+
+def test_an_engine_that_waits_gets_posted_commands_and_budget_in_one_message(host):
+    sync, words, sent = host
+    words[WAITS_AT] = 21
+    sync.allow(1, 40)
+    assert sent == [budget_word(1, 40)] and words[STEP_BUDGET] == 0
+
+
+def test_a_running_engine_has_posted_commands_before_the_budget(host):
+    sync, words, sent = host
+    sync.allow(1, 40)
+    assert sent == ["posted"] and words[STEP_BUDGET] == budget_word(1, 40)
+
+
+def test_a_budget_that_the_engine_has_not_taken_yet_does_not_replace_a_later_one(host):
+    sync, words, sent = host
+    words[WAITS_AT] = 21
+    sync.allow(1, 40)
+    words[WAITS_AT] = 0            # it goes on for another reason
+    sync.allow(1, 60)
+    assert sent == [budget_word(1, 40), budget_word(1, 60)] and words[STEP_BUDGET] == 0
+    words[STEP_BUDGET] = budget_word(1, 60)    # both taken
+    sync.allow(1, 80)
+    assert sent[2:] == ["posted"] and words[STEP_BUDGET] == budget_word(1, 80)

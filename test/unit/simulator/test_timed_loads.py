@@ -200,7 +200,8 @@ def test_several_axes_are_driven_or_held_by_one_command(case):
     sent = []
     call, post = made.sim._session.call, made.sim._session.supervisor.post
     made.sim._session.call = lambda command: sent.append(command) or call(command)
-    made.sim._session.supervisor.post = lambda command: sent.append(command) or post(command)
+    made.sim._session.supervisor.post = lambda command, at_once: (
+        sent.append(command) or post(command, at_once))
     made.sim.drives.drive_axes({"a::hinge": (1.0, 5.0), "b::hinge": (2.0, 5.0)})
     assert [type(command) for command in sent] == [SetMotors]
     made.sim.drives.hold_axes({"a::hinge": (1.0, 5.0, 2.0), "b::hinge": (2.0, 5.0, 2.0)})

@@ -3,13 +3,14 @@ from __future__ import annotations
 
 import queue
 import threading
+from collections import deque
 from concurrent.futures import Future
-from typing import Callable, Dict, List, Tuple
+from typing import Callable, Deque, Dict, List, Optional, Tuple
 
 from kinematic_backend import KinematicBackend
 
 from my_simulations.engine.api import Backend, EngineDiedError, EngineNotRunningError, Event, Reply
-from my_simulations.engine.commands import Command, Ping, Post
+from my_simulations.engine.commands import Command, Ping, Post, SetStepBudget
 from my_simulations.engine.process_engine import PostedCommands
 from my_simulations.engine.ring import Memory, RingReader, RingWriter
 from my_simulations.engine.runner import Runner
@@ -59,6 +60,7 @@ class InlineEngine:
         self._lock, self._send_lock = threading.Lock(), threading.Lock()
         self._waiting: Dict[int, Tuple[Command, Future[Reply]]] = {}
         self._posts = PostedCommands(self._ring)
+        self._held: "Deque[Tuple[int, Command]]" = deque()   # posted, for the next message
         self._numbers = 0
         self._on_event: Callable[[Event], None] = lambda event: None
         self._on_death: Callable[[str, List[Command]], bool] = lambda reason, commands: False
@@ -95,25 +97,37 @@ class InlineEngine:
                 return future
             self._numbers += 1
             self._waiting[self._numbers] = (command, future)
+            self._put_held()
             self._channel.commands.put((self._numbers, command))
         return future
 
-    def post(self, command: Command) -> bool:
+    def post(self, command: Command, at_once: bool = True) -> bool:
         with self._lock:
             if not self._alive or self._posts.full():
                 return False
             self._numbers += 1
             post = Post(command)
             self._posts.add(self._numbers, post)
-            self._channel.commands.put((self._numbers, post))
+            self._held.append((self._numbers, post))
+            if at_once:
+                self._put_held()
         return True
 
     @property
     def posted(self) -> int:
         return self._posts.last
 
-    def notify(self) -> None:
-        self._channel.commands.put((0, Ping()))
+    def send_posted(self) -> None:
+        with self._lock:
+            self._put_held()
+
+    def _put_held(self) -> None:
+        while self._held:
+            self._channel.commands.put(self._held.popleft())
+
+    def notify(self, budget: Optional[int] = None) -> None:
+        self.send_posted()
+        self._channel.commands.put((0, Ping() if budget is None else SetStepBudget(budget)))
 
     def notify_host(self) -> None:
         self.notices.set()
