@@ -46,6 +46,8 @@ class WorldVectorEnv(VectorEnv[Any, Any, Any]):
         self.action_space = batch_space(first.action_space, self.num_envs)
         self._over = np.zeros(self.num_envs, dtype=bool)
         self._threads = ThreadPoolExecutor(self.num_envs, "environment")
+        # Handing a single one to a thread takes as long as four physics steps of an arm.
+        self._each = map if self.num_envs == 1 else self._threads.map
 
     def reset(self, *, seed: Optional[Union[int, Sequence[Optional[int]]]] = None,
               options: Optional[Dict[str, Any]] = None) -> Tuple[Any, Dict[str, Any]]:
@@ -61,8 +63,8 @@ class WorldVectorEnv(VectorEnv[Any, Any, Any]):
             if len(seeds) != self.num_envs:
                 raise ValueError(f"{self.num_envs} environments need as many seeds, not"
                                  f" {len(seeds)}")
-        found = list(self._threads.map(lambda env, one: env.reset(seed=one, options=options),
-                                       self.envs, seeds))
+        found = list(self._each(lambda env, one: env.reset(seed=one, options=options),
+                                self.envs, seeds))
         self._over[:] = False
         return self._batch([observation for observation, _ in found]), self._infos(
             [info for _, info in found])
@@ -75,7 +77,7 @@ class WorldVectorEnv(VectorEnv[Any, Any, Any]):
         given = list(iterate(self.action_space, actions))
         if len(given) != self.num_envs:
             raise ValueError(f"{self.num_envs} environments need as many actions, not {len(given)}")
-        found = list(self._threads.map(self._step, self.envs, given, list(self._over)))
+        found = list(self._each(self._step, self.envs, given, list(self._over)))
         rewards = np.array([one[1] for one in found], dtype=np.float64)
         terminated = np.array([one[2] for one in found], dtype=bool)
         truncated = np.array([one[3] for one in found], dtype=bool)
@@ -84,10 +86,10 @@ class WorldVectorEnv(VectorEnv[Any, Any, Any]):
                 self._infos([one[4] for one in found]))
 
     def render(self) -> Optional[Tuple[Any, ...]]:
-        return tuple(self._threads.map(lambda env: env.render(), self.envs))
+        return tuple(self._each(lambda env: env.render(), self.envs))
 
     def close_extras(self, **kwargs: Any) -> None:
-        list(self._threads.map(lambda env: env.close(), self.envs))
+        list(self._each(lambda env: env.close(), self.envs))
         self._threads.shutdown()
 
     @staticmethod
