@@ -43,13 +43,13 @@ def test_a_command_becomes_wheel_speeds_with_the_defaults_of_the_original():
     assert right == pytest.approx(((0.3 + 0.17) / 0.075, 5.0))
 
 
-def test_wheels_with_the_names_of_the_other_side_are_exchanged_where_the_file_says_so():
+def test_legacy_mode_does_not_exchange_the_wheels_as_in_noetic():
     context, _ = diff_drive("<legacyMode>true</legacyMode>"
                             "<odometrySource>encoder</odometrySource>")
     context.deliver("robot/cmd_vel", linear={"x": 0.0}, angular={"z": 1.0})
     context.advance(0.5)
     left, right = (context.joints[name].motor[0] for name in WHEELS)
-    assert left == -right > 0.0
+    assert left == -right < 0.0
     assert context.published["robot/odom"][-1].twist.twist.angular.z == pytest.approx(1.0)
 
 

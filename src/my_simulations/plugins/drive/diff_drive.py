@@ -27,10 +27,9 @@ class DiffDrive(OdometryDrive):
         self._encoder = p.choice("odometrySource", {"encoder": True, "world": False}, False)
         self._publishes = p.flag("publishTf", True)
         self._broadcasts = p.flag("publishOdomTF", True)
-        left, right = (context.joint(p.text("leftJoint", "left_joint")),
-                       context.joint(p.text("rightJoint", "right_joint")))
-        # Files of before Noetic may say so: their wheels have the names of the other side.
-        self._joints = (right, left) if p.flag("legacyMode", False) else (left, right)
+        # <legacyMode> of Kinetic has no effect in Melodic and Noetic.
+        self._joints = (context.joint(p.text("leftJoint", "left_joint")),
+                        context.joint(p.text("rightJoint", "right_joint")))
         self._counter = WheelCounter(*self._joints, self._radius, self._separation)
         self._odometer = Odometer(
             context, p.text("odometryTopic", "odom") if self._publishes else "",
