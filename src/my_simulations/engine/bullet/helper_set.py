@@ -16,10 +16,10 @@ from .contact_settling import ContactSettling
 from .divergence_stop import DivergenceStop
 from .forces import Forces
 from .gyroscopic_rigid import GyroscopicRigid
+from .impact_watch import ImpactWatch
 from .joint_constraints import ConstraintBook, InterModelJoints
 from .joint_motors import JointMotors
 from .joint_wrenches import JointKey, JointWrenches
-from .landing_contacts import LandingContacts
 from .notices import Notices
 from .pair_coefficients import FrictionBalance, PairRestitution
 from .residual_friction import ResidualFriction
@@ -31,7 +31,6 @@ from .state_readout import StateReadout
 from .state_restore import Entry
 from .state_setter import StateSetter
 from .step_helper import StepLoop
-from .surface_stop import SurfaceStop
 from .velocity_decay import VelocityDecay
 from .wake_up import WakeUp
 from .wheel_friction import WheelFriction
@@ -78,9 +77,9 @@ class HelperSet:
         """Create all helpers that store nothing but data of bodies."""
         self._parameters = WorldParameters()
         self._residual = ResidualFriction(lambda uid: self._rolling.rolls(uid))
-        self._landing = LandingContacts(
+        self._impacts = ImpactWatch(
             lambda uid, other, normal: self._rolling.landed(uid, other, normal), self._parameters)
-        self._rolling = RollingContacts(self._landing.flies, lambda: self.forces.loaded_bodies,
+        self._rolling = RollingContacts(self._impacts.flies, lambda: self.forces.loaded_bodies,
                                         self._parameters.find_pairs, self._holding)
         self._seams = SeamContacts(self._rolling, self._parameters)
         self._level = LevelSeams(lambda: self._residual.fast, self._parameters)
@@ -104,7 +103,6 @@ class HelperSet:
             lambda row: self.motors.rate_of(row) or self.forces.servos.rate_of(row),
             self._notify)
         self.restored_sleep = RestoredSleep(self.settling.hold)
-        self._stop = SurfaceStop()
         self.divergence = DivergenceStop(self.notices.stopped, lambda: self.forces.loaded_bodies,
                                           self.readout.mark_changed)
         self.motors = JointMotors(self._axes,
@@ -116,7 +114,7 @@ class HelperSet:
         # The step helpers, in the order in which they act.
         helpers = (self._friction, self._bounces, self.settling, self._decay, self.forces,
                    self.planar, self._spin, self._residual, self.wheel_friction, self.holds,
-                   self._stop, self._landing, self._rolling, self._level, self._seams,
+                   self._impacts, self._rolling, self._level, self._seams,
                    self.divergence, self.restored_sleep)
         self.loop = StepLoop(helpers, pybullet.stepSimulation, self._parameters.apply)
         # All that store data of single bodies.
