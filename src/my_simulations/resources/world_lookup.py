@@ -20,6 +20,10 @@ SHIPPED = (
 )
 """The worlds of this package, in its folder `world`; all other files there are the user's."""
 
+_SHIPPED_FOLDERS = ("compat", "examples", "models", "objects", "test")
+"""The other folders of this package that have SDF files. A clone often is the folder
+`~/my_simulations`, so `users_folder` and the folder of `tools/run` can be inside the package."""
+
 _SYSTEM = ("/usr/", "/opt/ros/")
 """Folders of installed packages, which are never used for saving, even if writable."""
 
@@ -33,7 +37,9 @@ def users_folder() -> str:
 
 
 def is_shipped(path: str) -> bool:
-    """Whether an existing file ships with this package: a world of `SHIPPED`, a model, an object.
+    """Whether an existing world or model file ships with this package.
+
+    These are the worlds of `SHIPPED` and the files in the folders of its models and objects.
 
     Symbolic links are resolved: files that are linked into the package do not count.
     """
@@ -44,7 +50,9 @@ def is_shipped(path: str) -> bool:
     if inside.startswith(os.pardir + os.sep):
         return False
     folder, _, name = inside.partition(os.sep)
-    return folder != "world" or name.replace(os.sep, "/") in SHIPPED
+    if folder == "world":
+        return name.replace(os.sep, "/") in SHIPPED
+    return folder in _SHIPPED_FOLDERS
 
 
 def folder_of_users(world_file: str) -> str:

@@ -114,6 +114,15 @@ def test_the_worlds_that_ship_are_listed_and_none_has_a_name_of_the_lab_sheet():
         assert os.path.basename(name) not in SHEETS_NAMES
 
 
+def test_all_worlds_and_models_of_the_package_are_shipped():
+    tracked = subprocess.run(["git", "ls-files", "*.world", "*.sdf"], cwd=own_directory(),
+                             capture_output=True, text=True, check=False)
+    if tracked.returncode == 0:  # else the package was installed without its history
+        files = [os.path.join(own_directory(), name) for name in tracked.stdout.split()]
+        assert len(files) > len(SHIPPED)
+        assert [file for file in files if os.path.exists(file) and not is_shipped(file)] == []
+
+
 def test_a_students_file_in_the_packages_folder_is_the_students(tmp_path, monkeypatch):
     package = tmp_path / "package"
     (package / "world").mkdir(parents=True)
@@ -122,12 +131,17 @@ def test_a_students_file_in_the_packages_folder_is_the_students(tmp_path, monkey
         (package / "world" / name).write_text("<sdf/>")
     (tmp_path / "theirs.world").write_text("<sdf/>")
     os.symlink(tmp_path / "theirs.world", package / "world" / "empty_world.world")
-    (package / "model.sdf").write_text("<sdf/>")
+    for name in ("models/table/model.sdf", "worlds/test.world", "my_world.sdf"):
+        (package / name).parent.mkdir(parents=True, exist_ok=True)
+        (package / name).write_text("<sdf/>")
     assert is_shipped(str(package / "world/lab_room.world"))
-    assert is_shipped(str(package / "model.sdf"))
+    assert is_shipped(str(package / "models/table/model.sdf"))
     assert not is_shipped(str(package / "world/test.world"))
     assert not is_shipped(str(package / "world/empty_world.world"))
     assert not is_shipped(str(package / "world/lab_course.world"))
+    assert not is_shipped(str(package / "worlds/test.world"))   # `users_folder` of some clones
+    assert not is_shipped(str(package / "my_world.sdf"))        # where `tools/run` was typed
+    assert folder_of_users(str(package / "my_world.sdf")) == str(package)
     assert folder_of_users(str(package / "world/test.world")) == str(package / "world")
     assert folder_of_users(str(package / "world/empty_world.world")) == str(tmp_path)
     assert folder_of_users(str(package / "world/lab_room.world")) == ""
