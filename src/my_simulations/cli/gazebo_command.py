@@ -1,6 +1,7 @@
 """`gazebo`: server and editor together; a ROS node if there is a master, else without ROS."""
 from __future__ import annotations
 
+import importlib.util
 import sys
 import threading
 from typing import List, Optional
@@ -18,10 +19,15 @@ def main(argv: Optional[List[str]] = None) -> int:
     exit_on_signals()
     from ..ros.lifecycle import master_api
 
-    if master_api.fault_of(master_api.master_uri(words), "/gazebo"):
+    no_ros = ""
+    if importlib.util.find_spec("rospy") is None:   # a master can run beside a virtual environment
+        no_ros = "this Python has no rospy"
+    elif master_api.fault_of(master_api.master_uri(words), "/gazebo"):
+        no_ros = "no ROS master found"
+    if no_ros:
         from . import standalone
 
-        status = standalone.main(words, "gazebo")
+        status = standalone.main(words, "gazebo", no_ros)
         ignore_signals()
         return status
     threading.Thread(target=_show, args=(words,), daemon=True).start()

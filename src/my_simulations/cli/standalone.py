@@ -23,8 +23,13 @@ _EARLY_S = 1.0
 """Wall seconds after which the browser is opened before the world is there."""
 
 
-def main(words: List[str], program: str) -> int:
+def main(words: List[str], program: str, no_ros: str) -> int:
     """Run the world of the command line with its editor until a signal ends it.
+
+    Args:
+        words: the command line.
+        program: its name in messages.
+        no_ros: why it runs without ROS.
 
     Returns 0 after SIGINT or SIGTERM, 1 if the world or the editor could not be started.
     """
@@ -35,7 +40,7 @@ def main(words: List[str], program: str) -> int:
     def say(line: object) -> None:
         print(f"{program}: {line}", file=sys.stderr, flush=True)
 
-    say("no ROS master found; running without ROS")
+    say(f"{no_ros}; running without ROS")
     for notice in options.notices:
         say(notice)
     from ..engine.process_engine import ProcessEngine
