@@ -231,6 +231,22 @@ def test_sensors_and_plugins_can_be_left_out(file):
         assert len(world.topics) == 0
         with pytest.raises(CommandError, match="plugins=False"):
             world.publish("/cmd_vel", {})
+        with pytest.raises(CommandError, match="there is no topic /scan.*plugins=False"):
+            world.topics["/scan"]
+
+
+def test_a_topic_of_a_plugin_that_is_switched_off_is_refused_with_the_reason(tmp_path):
+    path = tmp_path / "one.sdf"
+    path.write_text("""<sdf version="1.6"><model name="m"><link name="l"/>
+<plugin name="lost" filename="liblost.so"/></model></sdf>""")
+    with my_simulations.open_world(plugins={"liblost.so": "no_such_module:Lost"}) as world:
+        world.spawn(str(path))
+        with pytest.raises(CommandError, match="there is no topic /found.*reported: .*one.sdf:2:.*"
+                                               "'lost'.*No module named 'no_such_module'"):
+            world.topics["/found"]
+        world.reset()
+        with pytest.raises(CommandError, match="topics are none$"):
+            world.topics["/found"]
 
 
 def test_a_plugin_whose_messages_are_not_installed_is_an_issue(tmp_path):

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import contextlib
-from typing import TYPE_CHECKING, Any, Callable, Dict, Mapping, NamedTuple, Optional, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Union
 
 from ..errors import CommandError, Issue
 from ..resources.ros_packages import PackageIndex
@@ -63,7 +63,8 @@ class Robots:
 
     def __init__(self, options: RobotOptions, log: Callable[[Issue], None],
                  advance: Callable[[int], None], step_size: Callable[[], float]) -> None:
-        self._options, self._log = options, log
+        self._options, self._report = options, log
+        self._issues: List[Issue] = []
         self._advance, self._step_size = advance, step_size
         self._simulator: Optional[Simulator] = None
         self._scene: Optional[SceneSensing] = None
@@ -88,13 +89,14 @@ class Robots:
             from .topics import Topics
 
             self._topics = Topics(self.graph, self._advance, self._step_size,
-                                  self.wait_until_loaded)
+                                  self.wait_until_loaded, self.explain_silence)
         return self._topics
 
     # -- life --------------------------------------------------------------------------------------
 
     def begin(self, simulator: Simulator) -> None:
         """Run the plugins of a simulator that is stepped manually."""
+        self._issues.clear()
         if not self._options.plugins:
             return
         from ..plugins.host_starter import HostStarter
@@ -155,7 +157,21 @@ class Robots:
         self.wait_until_loaded()
         return self.graph.services()
 
+    def explain_silence(self) -> str:
+        """Why plugins may not publish, to be appended to a message; "" if nothing is known."""
+        if not self._options.plugins:
+            return " (the world was opened with plugins=False)"
+        if self._issues:
+            more = len(self._issues) - 1
+            rest = f", and {more} more in world.issues" if more else ""
+            return f" (plugins reported: {self._issues[0]}{rest})"
+        return "" if self._options.sensors else " (the world was opened with sensors=False)"
+
     # -- inside ------------------------------------------------------------------------------------
+
+    def _log(self, issue: Issue) -> None:
+        self._issues.append(issue)
+        self._report(issue)
 
     def _require_plugins(self) -> None:
         if not self._options.plugins:

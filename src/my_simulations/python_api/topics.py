@@ -25,9 +25,10 @@ class Topic:
     """
 
     def __init__(self, graph: LocalGraph, name: str, advance: Callable[[int], None],
-                 step_size: Callable[[], float]) -> None:
+                 step_size: Callable[[], float], explain_silence: Callable[[], str]) -> None:
         self.name = name
         self._graph, self._advance, self._step_size = graph, advance, step_size
+        self._explain_silence = explain_silence
         self._latest: Optional[Message] = None
         self._count = 0
         self._kept: Deque[Message] = deque(maxlen=_KEPT)
@@ -52,7 +53,7 @@ class Topic:
         """The last message. Raises CommandError if none has arrived since the first look-up."""
         if self._latest is None:
             raise CommandError(f"no message has arrived on {self.name} since the topic was looked"
-                               " up: make steps, or call wait()")
+                               f" up: make steps, or call wait(){self._explain_silence()}")
         return self._latest
 
     def take(self) -> List[Any]:
@@ -74,7 +75,8 @@ class Topic:
             self._advance(1)
             if self._count > before:
                 return self.latest
-        raise CommandError(f"no message arrived on {self.name} in {seconds:g} s of sim time")
+        raise CommandError(f"no message arrived on {self.name} in {seconds:g} s of sim time"
+                           + self._explain_silence())
 
     def close(self) -> None:
         """Stop listening: robots do not compute what nothing listens to."""
@@ -100,12 +102,14 @@ class Topics(Mapping[str, Topic]):
         advance: makes a number of steps.
         step_size: of the world, s.
         wait_until_loaded: has the plugins of new models loaded.
+        explain_silence: why plugins may not publish, to be appended to a message.
     """
 
     def __init__(self, graph: LocalGraph, advance: Callable[[int], None],
-                 step_size: Callable[[], float], settle: Callable[[], None]) -> None:
+                 step_size: Callable[[], float], wait_until_loaded: Callable[[], None],
+                 explain_silence: Callable[[], str]) -> None:
         self._graph, self._advance, self._step_size = graph, advance, step_size
-        self._settle = settle
+        self._wait_until_loaded, self._explain_silence = wait_until_loaded, explain_silence
         self._open: Dict[str, Topic] = {}
 
     def __getitem__(self, name: str) -> Topic:
@@ -114,8 +118,9 @@ class Topics(Mapping[str, Topic]):
             kinds = self.kinds()
             if full not in kinds:
                 raise CommandError(f"there is no topic {full}; topics are"
-                                   f" {', '.join(kinds) or 'none'}")
-            self._open[full] = Topic(self._graph, full, self._advance, self._step_size)
+                                   f" {', '.join(kinds) or 'none'}{self._explain_silence()}")
+            self._open[full] = Topic(self._graph, full, self._advance, self._step_size,
+                                     self._explain_silence)
         return self._open[full]
 
     def __contains__(self, name: object) -> bool:
@@ -129,7 +134,7 @@ class Topics(Mapping[str, Topic]):
 
     def kinds(self) -> Dict[str, str]:
         """The types of all topics, by name; this does not begin to listen."""
-        self._settle()
+        self._wait_until_loaded()
         return self._graph.topics()
 
     def forget(self) -> None:

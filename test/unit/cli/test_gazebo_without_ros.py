@@ -15,7 +15,7 @@ from my_simulations.ros.lifecycle import master_api
     (False, "", "this Python has no rospy"),
     (False, "connection refused", "this Python has no rospy"),
 ])
-def test_the_world_is_a_node_if_there_are_rospy_and_a_master(monkeypatch, has_rospy, fault, started):
+def test_a_world_is_a_node_if_rospy_and_a_master_exist(monkeypatch, has_rospy, fault, started):
     monkeypatch.setattr(importlib.util, "find_spec",
                         lambda name: object() if has_rospy or name != "rospy" else None)
     monkeypatch.setattr(master_api, "fault_of", lambda uri, caller: fault)
