@@ -289,10 +289,14 @@ require:
     assert "http" not in report and "<script" not in report
 
 
-def test_a_name_that_is_not_there_refuses_or_fails_the_case(folder):
-    text = "duration: 0.1\nvary:\n  m: {set: mass.nobody, values: [1]}\n"
+def test_a_name_that_is_not_there_refuses_or_fails_the_case(folder, capsys):
+    text = "duration: 0.1\nvary:\n  m: {set: mass.nobody, values: [1, 2]}\n"
     assert run(folder, text) == 1
-    assert table(folder)[0]["status"] == "refused" and "nobody" in table(folder)[0]["issue"]
+    first = table(folder)[0]
+    assert first["status"] == "refused" and "nobody" in first["issue"]
+    assert "its models are ground_plane" in first["issue"]
+    assert capsys.readouterr().out.splitlines()[-1] == (
+        f"2 refused: {first['issue']} (study show {first['case']} --in {folder / 's'})")
     assert run(folder, "duration: 0.1\nmeasure:\n  z: final(pose.nobody.z)\n", name="t") == 1
     assert table(folder, "t")[0]["status"] == "failed"
     assert "nobody" in table(folder, "t")[0]["issue"]

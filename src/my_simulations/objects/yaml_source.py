@@ -86,15 +86,15 @@ def _text(file: str) -> str:
         with open(file, "rb") as stream:
             data = at_most(stream, LARGEST)
     except OSError as fault:
-        raise InputError([error("list-unreadable", f"cannot read the list: {fault.strerror}",
+        raise InputError([error("list-unreadable", f"cannot read the file: {fault.strerror}",
                                 file=file)]) from fault
     if len(data) > LARGEST:
-        raise InputError([error("list-too-large", f"the list is larger than {LARGEST} bytes",
+        raise InputError([error("list-too-large", f"the file is larger than {LARGEST} bytes",
                                 file=file)])
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError as fault:
-        raise InputError([error("list-not-utf8", f"the list is not UTF-8 text: {fault}", file=file,
+        raise InputError([error("list-not-utf8", f"the file is not UTF-8 text: {fault}", file=file,
                                 line=data.count(b"\n", 0, fault.start) + 1,
                                 hint="save it as UTF-8")]) from fault
 

@@ -18,7 +18,7 @@ from . import slurm
 from .case_world import open_case, run_case
 from .cluster_address import SLURM, TlsFiles, scheduler_address
 from .command_line import parser
-from .folder import REPORT, StudyFolder, shard_of
+from .folder import REPORT, Cause, StudyFolder, shard_of
 from .journal import Journal, finished_cases
 from .plan import ALL_CASES, Case, CasePlan, Shard, number_of
 from .replacing import replacement_file
@@ -35,7 +35,7 @@ from .study_runner import Rate, Report, StudyRunner
 from .table import rows_in_order
 
 NOT_ALL_OK, INVALID, INTERRUPTED = 1, 2, 130
-
+_MOST_CAUSES = 3   # that are printed
 
 Records = Mapping[str, Callable[[str], Record]]
 
@@ -215,7 +215,18 @@ def _print_status(folder: StudyFolder, plan: CasePlan, shard: Shard, as_json: bo
         _print(f"{name}: {done} of {cases} cases" + (f": {became}" if became else ""))
         for file in files:
             _print(f"  {file}")
+        if total[OK] < done:
+            _print_causes(folder.causes(plan, shard), folder.path)
     return 0 if total[OK] == cases else NOT_ALL_OK
+
+
+def _print_causes(causes: Sequence[Cause], folder: str) -> None:
+    """Print the most frequent reasons of cases that are not ok, each with a case to look at."""
+    for cause in causes[:_MOST_CAUSES]:
+        _print(f"{cause.count} {cause.status}: {cause.issue or cause.status}"
+               f" (study show {cause.case} --in {folder})")
+    if len(causes) > _MOST_CAUSES:
+        _print(f"{len(causes) - _MOST_CAUSES} more causes are in {REPORT}")
 
 
 def _count(plan: CasePlan, shard: Shard) -> int:

@@ -5,15 +5,15 @@ import glob
 import os
 import re
 import shutil
-from typing import Any, Callable, Dict, List
+from typing import Any, Callable, Dict, List, NamedTuple, Tuple
 
 from ..errors import CommandError
 from ..program_end import is_disk_full
 from .journal import has_header, header_of, statuses
 from .plan import ALL_CASES, CasePlan, Shard, number_of
 from .replacing import replacement_file
-from .row import STATUSES
-from .table import parquet_fault, write_csv, write_parquet
+from .row import OK, STATUSES
+from .table import parquet_fault, rows_in_order, write_csv, write_parquet
 
 COPY = "study.yaml"
 REPORT = "report.html"
@@ -22,6 +22,15 @@ REPORT = "report.html"
 def shard_of(journal: str) -> Shard:
     found = re.search(r"-(\d+)-of-(\d+)\.jsonl$", journal)
     return Shard(int(found[1]), int(found[2])) if found else ALL_CASES
+
+
+class Cause(NamedTuple):
+    """Why cases are not ok; `case` is the id of the first one."""
+
+    status: str
+    issue: str
+    count: int
+    case: str
 
 
 class StudyFolder:
@@ -96,6 +105,17 @@ class StudyFolder:
             if status is not None:
                 count[status] += 1
         return count
+
+    def causes(self, plan: CasePlan, shard: Shard = ALL_CASES) -> List[Cause]:
+        """Why cases of a shard of the plan are not ok, the most frequent cause first."""
+        planned = {case.id for case in plan.cases(shard)}
+        found: Dict[Tuple[str, str], Cause] = {}
+        for row in rows_in_order(self.journals()):
+            if row.status != OK and row.case in planned:
+                key = (row.status, row.issue)
+                count, case = (found[key].count, found[key].case) if key in found else (0, row.case)
+                found[key] = Cause(*key, count + 1, case)
+        return sorted(found.values(), key=lambda cause: -cause.count)
 
     def header(self) -> Dict[str, Any]:
         """What the first journal says about the study."""

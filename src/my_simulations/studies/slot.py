@@ -240,7 +240,8 @@ class Slot:
             raise InputError(faults)
         unused = changes.unused()
         if unused:
-            raise CaseRefusedError("the world has no '" + "', '".join(unused) + "' to vary")
+            raise CaseRefusedError("the world has no '" + "', '".join(unused) + "' to vary; its"
+                                   f" models are {', '.join(sorted(world.names)[:10])}")
         return world
 
     def _in_new_engine(self, choice: WorldChoice) -> OpenWorld:

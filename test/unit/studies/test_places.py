@@ -1,6 +1,8 @@
 """Where cases run: addresses, scripts, shards."""
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from my_simulations.errors import CommandError
@@ -8,7 +10,7 @@ from my_simulations.studies.cluster_address import scheduler_address
 from my_simulations.studies.folder import StudyFolder, shard_of
 from my_simulations.studies.journal import Journal
 from my_simulations.studies.plan import ALL_CASES, CasePlan, Shard
-from my_simulations.studies.row import OK, Row
+from my_simulations.studies.row import FAILED, OK, REFUSED, Row
 from my_simulations.studies.slurm import job_script
 from my_simulations.studies.study_file import read_study
 
@@ -82,6 +84,23 @@ def test_a_folder_is_complete_once_each_case_of_the_plan_has_a_row(tmp_path):
     journal.append([row(plan.case(3))])
     journal.close()
     assert folder.is_complete(plan) and folder.status_counts(plan)[OK] == 4
+
+
+def test_the_causes_of_a_shard_are_counted(tmp_path):
+    (tmp_path / "s.yaml").write_text("duration: 1\nseeds: 8\n")
+    plan = CasePlan(read_study(str(tmp_path / "s.yaml"))[0])
+    folder = StudyFolder(str(tmp_path))
+    one, two, three, four = (plan.case(index) for index in (0, 2, 4, 6))
+    journal = Journal(folder.journal_of(Shard(1, 2)), {"study": "s", "file": plan.study.file})
+    journal.append([replace(row(one), status=FAILED, issue="low"),
+                    replace(row(two), status=REFUSED, issue="no box"),
+                    replace(row(three), status=REFUSED, issue="no box"),
+                    replace(row(four), status=REFUSED, issue="no box"), row(four),
+                    Row(REFUSED, 16 * "0", 0, 0, issue="of a former id")])
+    journal.close()
+    assert folder.causes(plan) == folder.causes(plan, Shard(1, 2)) == [
+        (REFUSED, "no box", 2, two.id), (FAILED, "low", 1, one.id)]
+    assert folder.causes(plan, Shard(2, 2)) == []
 
 
 @pytest.mark.parametrize("left", ["", '{"journal": 1, "stu'])
