@@ -7,11 +7,10 @@ import json
 import re
 from pathlib import Path
 from random import Random
-from typing import Any, Callable, Hashable, Iterable, Iterator, List
+from typing import Any, Callable, Dict, Hashable, Iterable, Iterator, List, Mapping
 
 import yaml
 from building_plans import two_rooms
-from grammars import tree_of
 from lxml import etree
 from mutant_run import Target, shape
 from mutations import (
@@ -32,9 +31,10 @@ from my_simulations.building.building_operations import building_sdf
 from my_simulations.building.plan_json import plan_to_json
 from my_simulations.description.light import Light
 from my_simulations.description.model import Model
+from my_simulations.description.shapes import Mesh
 from my_simulations.description.world import World
 from my_simulations.errors import CommandError, InputError, Issue
-from my_simulations.formats.mesh.loading import triangles_of
+from my_simulations.formats.mesh.loading import load_mesh
 from my_simulations.formats.reading import read_any
 from my_simulations.formats.sdf import model_tables, sensor_tables, world_tables
 from my_simulations.formats.sdf.writer.entities import write_entity, write_world
@@ -84,8 +84,24 @@ def tables(*modules: Any) -> List[Any]:
             if hasattr(value, "children") and hasattr(value, "of")]
 
 
-SDF = tree_of(tables(model_tables, world_tables, sensor_tables), {})
-URDF = tree_of(tables(urdf_tables), {})
+def children_by_element(tables: Iterable[Any]) -> Dict[str, List[str]]:
+    """Return the children that each element may have, from the tables of the readers."""
+    found: Dict[str, List[str]] = {}
+
+    def add(tag: str, children: Mapping[str, Any]) -> None:
+        found.setdefault(tag, []).extend(name.strip("/") for name in children)
+        for name, entry in children.items():
+            inside = getattr(entry, "children", None)
+            if inside:
+                add(name, inside)
+
+    for table in tables:
+        add(table.of.__name__.lower(), table.children)
+    return found
+
+
+SDF = children_by_element(tables(model_tables, world_tables, sensor_tables))
+URDF = children_by_element(tables(urdf_tables))
 
 
 def features(issues: Iterable[Issue], more: Hashable = "read") -> List[Hashable]:
@@ -161,16 +177,18 @@ def collada(folder: Path) -> Target:
             if path.stat().st_size <= SMALL:
                 seeds.append(root._replace(attributes=(("xmlns", COLLADA), *root.attributes)))
     known.learn_names(COLLADA_TREE, ("id", "sid", "url", "source", "semantic", "count", "offset"))
-    path = folder / "m.dae"
+    paths = itertools.cycle([folder / f"m{number}.dae" for number in range(40)])
 
     def load(text: str) -> List[Hashable]:
+        path = next(paths)  # the cache of meshes is smaller than the number of paths
         path.write_bytes(text.encode("utf-8", "surrogatepass"))
         try:
-            vertices, triangles = triangles_of(str(path), "")
+            data = load_mesh(Mesh(path.name, str(path)))
         except InputError as fault:
+            assert fault.issues
             return [shape(fault.first.message)]
-        assert len(triangles) and triangles.max() < len(vertices)
-        return [min(len(triangles), 50)]
+        assert len(data.triangles) and data.triangles.max() < len(data.vertices)
+        return [min(len(data.triangles), 50)]
 
     return Target("DAE", seeds, known.change,
                   lambda made, chance: damaged(xml_text(made), chance), load, suffix=".dae",

@@ -1,4 +1,4 @@
-"""Structured inputs changed in plain Python: a thousand times faster than drawn ones.
+"""Changes structured inputs at random.
 
 XML is a tree of `Element`, all else a tree of dictionaries, lists and scalars. Trees are never
 changed in place: a changed one shares what it can with the one before.
@@ -10,17 +10,20 @@ import re
 from random import Random
 from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Tuple
 
-from grammars import NAMES, NUMBERS, WORDS
-
 Attributes = Tuple[Tuple[str, str], ...]
 MOST_KEPT = 60
 """Examples that are kept of what belongs to one name."""
 
-STRANGE_NUMBERS = (*NUMBERS, "-0", "2147483648", "-2147483649", "1e-400", "18446744073709551616",
-                   "4.9e-324", "1.7976931348623157e308", "1e155", "0.1 m", "90deg", "+1", ".5",
-                   "5.", "1e+05", "1_000", "0b1", "infinity", "NaN", "-nan", "1.#INF")
-STRANGE_TEXTS = (*NAMES, *WORDS, "\t\n", "\x01", "\x7f", "\u202e", "\ufffe", "a\nb", "a/b", "::",
-                 "a::", "::a", "__default__", "model://a/../../b", "package:///x", "file://",
+STRANGE_NUMBERS = ("0", "1", "-1", "0.5", "1e308", "-1e308", "1e-320", "nan", "inf", "-inf",
+                   "1e999", "0x10", "1,5", "", "٣", "1e", "--1", "99999999999999999999", "-0",
+                   "2147483648", "-2147483649", "1e-400", "18446744073709551616", "4.9e-324",
+                   "1.7976931348623157e308", "1e155", "0.1 m", "90deg", "+1", ".5", "5.", "1e+05",
+                   "1_000", "0b1", "infinity", "NaN", "-nan", "1.#INF")
+STRANGE_TEXTS = ("a", "b", "link", "world", "a::b", "", " ", "é", "🤖", "__model__", "a" * 300,
+                 "../x", "true", "false", "1", "0", "yes", "revolute", "fixed", "ball", "box",
+                 "model://nowhere", "file:///dev/zero", "package://p/x.dae", "%s%n", "]]>", "&amp;",
+                 "\t\n", "\x01", "\x7f", "\u202e", "\ufffe", "a\nb", "a/b", "::", "a::", "::a",
+                 "__default__", "model://a/../../b", "package:///x", "file://",
                  "http://127.0.0.1:1/x", "~", "$(env HOME)", "${x}", "{0}", "<a/>", "&lt;", "null",
                  "None", "[]", "x" * 5000, "0 " * 500, "a" * 300 + "/" + "b" * 300, ".", "..",
                  "\\", "'", '"', "\r", "e\u0301", "\U0010ffff")

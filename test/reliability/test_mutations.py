@@ -8,14 +8,15 @@ from pathlib import Path
 from typing import List, Tuple
 
 import pytest
+from mutant_readers import read_document
 from mutant_run import Target, prove
 from proofs import scaled
-from test_fuzzing import read
 
 from my_simulations.errors import InputError
 from my_simulations.formats.mesh.loading import triangles_of
 from my_simulations.objects.object_list import parse_objects
 from my_simulations.objects.yaml_source import read_yaml
+from my_simulations.resources.resolver import Resolver
 
 INPUTS = int(os.environ.get("MY_SIMULATIONS_MUTATIONS") or scaled(600, 10_000_000))
 ROOT = Path(__file__).resolve().parents[2]
@@ -62,11 +63,13 @@ def damaged(data: bytes, others: List[bytes], chance: random.Random) -> bytes:
 @pytest.mark.usefixtures("silent")
 def test_damaged_files_are_read_or_refused(record, tmp_path):
     outcomes: Counter = Counter()
+    resolver = Resolver()
     files = corpus()
     contents = [path.read_bytes() for path in files]
 
     def feed(made: Tuple[str, bytes]) -> Tuple[()]:
         suffix, data = made
+        refused = False
         path = tmp_path / f"damaged{suffix}"
         if suffix in MESHES + LISTS:
             path.write_bytes(data)
@@ -77,8 +80,8 @@ def test_damaged_files_are_read_or_refused(record, tmp_path):
                 tree, source, _ = read_yaml(str(path), "/objects")
                 parse_objects(tree, source)
             else:
-                read(data)
-            outcomes["read"] += 1
+                refused = read_document(data, resolver)[0] == "refused"
+            outcomes["refused" if refused else "read"] += 1
         except InputError as fault:
             assert fault.issues
             outcomes["refused"] += 1
