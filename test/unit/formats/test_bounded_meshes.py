@@ -136,7 +136,7 @@ def test_collada_of_many_empty_nodes_is_read_elsewhere_and_beyond_a_limit_not_at
     path.write_bytes(nodes(30_000))
     with pytest.raises(InputError, match="has no faces"):
         load_mesh(Mesh("nodes.dae", str(path)))
-    monkeypatch.setattr(collada, "_load_collada",
+    monkeypatch.setattr(collada, "_parse_leniently",
                         lambda text: pytest.fail("read before it is refused"))
     path.write_bytes(nodes(150_000))
     with pytest.raises(InputError, match="more than 100000 nodes"):

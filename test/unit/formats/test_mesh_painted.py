@@ -42,6 +42,10 @@ BESIDE = {
                                           "<instance_camera url='#c'/></node>"),
     "a light": ("<visual_scene id='s'>", "<visual_scene id='s'><node id='lamp'>"
                                          "<instance_light url='#l'/></node>"),
+    "a name with an angle bracket": ("<visual_scene id='s'>",
+                                     "<visual_scene id='s' name=\"<STL_BINARY>\">"),
+    "normals that are not there": ("offset='0'/><p>0 1 3", "offset='0'/><input semantic='NORMAL' "
+                                   "source='#gone' offset='0'/><p>0 1 3"),
     "lines": ("<triangles ", "<lines count='1' material='p'><input semantic='VERTEX' source='#v' "
                              "offset='0'/><p>0 1</p></lines><triangles "),
 }

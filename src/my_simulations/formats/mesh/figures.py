@@ -5,22 +5,19 @@ A skin's vertex follows up to four nodes (bones); other surfaces follow the node
 """
 from __future__ import annotations
 
-import io
 import os
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from types import SimpleNamespace
 from typing import Any, Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
 
 from .bvh import read_bvh
-from .collada import unit_of
-from .collada_cleanup import parse_collada
+from .collada import ColladaDocument, material_references, parse_collada, unit_of
+from .collada_materials import ColladaMaterials
 from .keyframes import Clip, clip_of
 from .node_tree import Array, Bones, NodeTree, floats
-from .paint import effect_of
 from .painted import PaintedPart, corners_of, merge_corners
 from .part import MOST_TRIANGLES, MeshError
 
@@ -170,7 +167,7 @@ class _Reader:
         self._root, self._folder = root, folder
         self._tree = NodeTree(root)
         self._clip = clip_of(root, self._tree)
-        self._document = _shapes_of(root)
+        self._document, self._materials = ColladaDocument(root), ColladaMaterials(root)
         self._found: List[FigurePart] = []
         self._triangles = 0
 
@@ -196,45 +193,22 @@ class _Reader:
         self._add(element.get("source"), node, instance, _Binding(element, self._tree, roots))
 
     def _add(self, url: str, node: int, instance: Any, binding: "Optional[_Binding]") -> None:
-        geometry = self._document.geometries.get(url[1:])
+        geometry = self._tree.by_id.get(url[1:])
         if geometry is None:
             return
-        materials = {one.get("symbol"): SimpleNamespace(
-            target=self._document.materials.get((one.get("target") or "#")[1:]), inputs=[])
-            for one in instance.iter("{*}instance_material")}
-        for primitive in geometry.bind(np.eye(4), materials).primitives():
-            corners = corners_of(primitive)
-            if corners is None:
-                continue
-            index, places, normals, uv, material = corners
+        materials = material_references(instance)
+        for surface in self._document.surfaces(geometry):
+            index = surface.triangles.reshape(-1)
             self._triangles += len(index) // 3
             if self._triangles > MOST_TRIANGLES:
                 raise MeshError("it has too many triangles")
-            part, first = merge_corners(places, normals, uv, effect_of(material, self._folder),
+            paint = self._materials.paint_of(materials.get(surface.material, ""), self._folder)
+            part, first = merge_corners(*corners_of(surface, np.eye(4)), paint,
                                         None if binding is None else index)
             skin = None if binding is None else binding.of(index[first])
             if binding is not None:
                 part = binding.bound(part)
             self._found.append(FigurePart(part, node, skin))
-
-
-def _shapes_of(root: Any) -> Any:
-    """Geometry and materials in pycollada's form, without what it reads slowly or not at all."""
-    import copy
-
-    import collada
-    from lxml import etree
-
-    plain = copy.deepcopy(root)
-    for child in list(plain):
-        if etree.QName(child).localname in ("library_animations", "library_animation_clips",
-                                            "library_controllers", "library_nodes",
-                                            "library_visual_scenes", "scene"):
-            plain.remove(child)
-    try:
-        return collada.Collada(io.BytesIO(etree.tostring(plain)), ignore=[collada.DaeError])
-    except collada.DaeError as fault:
-        raise MeshError(f"its surfaces cannot be read: {fault.msg}") from None
 
 
 class _Binding:

@@ -6,7 +6,7 @@ from typing import Any, Dict, List, Optional, Tuple
 
 import numpy as np
 
-from .node_tree import Array, NodeTree, Placing, floats, local_matrix
+from .node_tree import Array, NodeTree, Placing, floats, local_matrix, placings_of
 
 _MEMBERS = {"X": 0, "Y": 1, "Z": 2, "ANGLE": 3}
 
@@ -63,7 +63,7 @@ def clip_of(root: Any, tree: NodeTree) -> Optional[Clip]:
                 channels.setdefault(made.node, []).append(made)
     groups: Dict[bytes, List[_NodeKeys]] = {}
     for node, found in channels.items():
-        keys = _NodeKeys(node, found, tree.transform_elements(node))
+        keys = _NodeKeys(node, found, placings_of(tree.elements[node]))
         groups.setdefault(keys.times.tobytes(), []).append(keys)
     if not groups:
         return None

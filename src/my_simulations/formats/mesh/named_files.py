@@ -125,65 +125,19 @@ def _of_gltf(data: bytes) -> List[NamedFile]:
 
 
 def _of_collada(data: bytes) -> List[NamedFile]:
-    from .collada_cleanup import parse_collada
+    """The images of all materials that a geometry uses, each once."""
+    from .collada import parse_collada
+    from .collada_materials import ColladaMaterials
 
-    return _ColladaImages(parse_collada(data)).shown()
-
-
-class _ColladaImages:
-    """The images of a document's materials."""
-
-    def __init__(self, root: Any) -> None:
-        self._by_id: Dict[str, Any] = {
-            element.get("id"): element
-            for element in root.iter("{*}material", "{*}effect", "{*}image") if element.get("id")}
-        self._materials = dict.fromkeys(
-            element.get("target", "") for element in root.iter("{*}instance_material"))
-
-    def shown(self) -> List[NamedFile]:
-        """The images of all materials that a geometry uses, each once."""
-        found: Dict[NamedFile, None] = {}
-        for target in self._materials:
-            material = self._target(target)
-            instance = None if material is None else material.find("{*}instance_effect")
-            effect = None if instance is None else self._target(instance.get("url", ""))
-            image = None if effect is None else self._image(effect)
-            file = None if image is None else _file_of_image(image)
-            if file is not None:
-                found[file] = None
-        return list(found)
-
-    def _target(self, url: str) -> Any:
-        return self._by_id.get(url.rpartition("#")[2])
-
-    def _image(self, effect: Any) -> Any:
-        """The image of an effect, by the rule of `paint._picture`; None for none."""
-        for kind in ("diffuse", "specular", "emission", "ambient"):
-            texture = effect.find(f".//{{*}}{kind}/{{*}}texture")
-            if texture is not None:
-                return self._find_sampled_image(effect, texture.get("texture", ""))
-        return None
-
-    def _find_sampled_image(self, effect: Any, name: str) -> Any:
-        """The image of a sampler (COLLADA 1.4 or 1.5), or the image that has this id itself."""
-        parameters = {one.get("sid"): one for one in effect.iter("{*}newparam")}
-        sampler = parameters.get(name)
-        if sampler is None:
-            return self._by_id.get(name)
-        direct = sampler.find(".//{*}instance_image")
-        if direct is not None:
-            return self._target(direct.get("url", ""))
-        surface = parameters.get((sampler.findtext(".//{*}source") or "").strip())
-        named = None if surface is None else surface.findtext(".//{*}init_from")
-        return self._by_id.get((named or "").strip())
+    root = parse_collada(data)
+    materials = ColladaMaterials(root)
+    urls = dict.fromkeys(one.get("target", "") for one in root.iter("{*}instance_material"))
+    pictures = (materials.picture_of(url) for url in urls)
+    found = (_file_of_image(picture) for picture in pictures if picture is not None)
+    return list(dict.fromkeys(file for file in found if file is not None))
 
 
-def _file_of_image(image: Any) -> Optional[NamedFile]:
-    source = image.find(".//{*}init_from")
-    if source is None:
-        return None
-    ref = source.find("{*}ref")
-    element = source if ref is None else ref
+def _file_of_image(element: Any) -> Optional[NamedFile]:
     name = unquote((element.text or "").strip())
     line: int = element.sourceline or 0
     return NamedFile(IMAGE, name, line if line < _LAST_LINE else 0) if name else None

@@ -9,7 +9,7 @@ import numpy as np
 from .part import MeshError
 
 MOST_NODES, _DEEPEST = 20_000, 100
-TRANSFORM_TAGS = ("matrix", "translate", "rotate", "scale")
+_TRANSFORM_TAGS = ("{*}matrix", "{*}translate", "{*}rotate", "{*}scale")
 """Elements that say where a node is; others (lookat, skew) are ignored."""
 
 Array = Any  # a NumPy array; its shape is documented at each use
@@ -18,7 +18,12 @@ Placing = Tuple[str, str, Array]
 
 
 def floats(element: Any) -> Array:
-    return np.array("".join(element.itertext()).split(), dtype=np.float64)
+    """The numbers in an element. Raises MeshError: one is not a number."""
+    try:
+        return np.array("".join(element.itertext()).split(), dtype=np.float64)
+    except ValueError as fault:
+        raise MeshError(f"<{element.tag.rpartition('}')[2]}>: {fault}",
+                        element.sourceline) from None
 
 
 class Bones:
@@ -94,8 +99,8 @@ class NodeTree(Bones):
                  else next(root.iter("{*}visual_scene"), None))
         for child in () if scene is None else scene.iterchildren("{*}node"):
             self._walk(child, -1, 0)
-        self.rest: Array = np.array([local_matrix(self.transform_elements(n))
-                                     for n in range(len(self.elements))]).reshape(-1, 4, 4)
+        self.rest: Array = np.array([local_matrix(placings_of(element))
+                                     for element in self.elements]).reshape(-1, 4, 4)
 
     def release(self) -> None:
         """Give the XML back, which is most of what this takes."""
@@ -136,11 +141,11 @@ class NodeTree(Bones):
             number = self.parents[number]
         return False
 
-    def transform_elements(self, number: int) -> List[Placing]:
-        """What says where a node is, in its order."""
-        return [(one.get("sid") or "", one.tag.rsplit("}", 1)[-1], floats(one))
-                for one in self.elements[number].iterchildren(*(f"{{*}}{kind}"
-                                                                for kind in TRANSFORM_TAGS))]
+
+def placings_of(node: Any) -> List[Placing]:
+    """What says where a `<node>` is, in its order."""
+    return [(one.get("sid") or "", one.tag.rsplit("}", 1)[-1], floats(one))
+            for one in node.iterchildren(*_TRANSFORM_TAGS)]
 
 
 def local_matrix(placings: Sequence[Placing]) -> Array:

@@ -1,9 +1,7 @@
 """Materials of mesh files, as cameras draw them."""
 from __future__ import annotations
 
-import os
 from typing import Any, Dict, NamedTuple, Optional, Sequence, Tuple
-from urllib.parse import unquote
 
 import numpy as np
 
@@ -14,7 +12,6 @@ Array = Any  # a NumPy array; its shape is documented at each use
 HOLE = 0.004
 """Alpha below which a pixel of a picture is left out, unless the file says otherwise."""
 
-_LUMINANCE = 0.212671, 0.715160, 0.072169
 _WHITE = (1.0, 1.0, 1.0)
 
 
@@ -39,53 +36,7 @@ class Paint(NamedTuple):
     double_sided: bool = False
 
 
-def effect_of(material: Any, folder: str) -> Paint:
-    """What a material of pycollada looks like; `folder`: where its pictures are looked for."""
-    effect = getattr(material, "effect", None)
-    diffuse, emission = getattr(effect, "diffuse", None), _glow(getattr(effect, "emission", None))
-    picture = None if effect is None else _picture(effect)
-    if diffuse is None and picture is None:
-        return Paint(emission=emission)
-    rgb = (diffuse[0], diffuse[1], diffuse[2]) if isinstance(diffuse, tuple) else _WHITE
-    color = (*rgb, _opacity(effect))
-    if picture is None:
-        return Paint(color, None, emission)
-    path = unquote(picture.sampler.surface.image.path or "")
-    path = path[len("file://"):] if path.startswith("file://") else path
-    return Paint(color, os.path.join(folder, path), emission)
-
-
-def _picture(effect: Any) -> Any:
-    """The texture of an effect: that of its diffuse colour, else one that it has for another.
-
-    Gazebo's rule: a material has one picture.
-    """
-    kinds = ["diffuse", *(["specular"] if effect.shadingtype in ("phong", "blinn") else []),
-             *(["emission", "ambient"] if effect.shadingtype != "constant" else [])]
-    found = (getattr(effect, kind) for kind in kinds)
-    return next((one for one in found if hasattr(one, "sampler")), None)
-
-
-def _opacity(effect: Any) -> float:
-    """Of a COLLADA effect: 1 unless `<transparent opaque="...">` says how its colour is meant.
-
-    Gazebo's rule; pictures with transparency are ignored.
-    """
-    transparent = effect.transparent
-    element = effect.xmlnode.find(".//{*}transparent")
-    if element is None or not isinstance(transparent, tuple) or len(transparent) < 4:
-        return 1.0
-    written = effect.xmlnode.find(".//{*}transparency") is not None
-    times = effect.transparency if written else 1.0
-    if not isinstance(times, float):
-        return 1.0
-    luminance = sum(part * weight for part, weight in zip(transparent, _LUMINANCE))
-    found = {"A_ONE": transparent[3] * times, "A_ZERO": 1.0 - transparent[3] * times,
-             "RGB_ONE": luminance * times, "RGB_ZERO": 1.0 - luminance * times}
-    return _correct_opacity(found.get(element.get("opaque"), 1.0))
-
-
-def _correct_opacity(opacity: float) -> float:
+def correct_opacity(opacity: float) -> float:
     """Old exporters call wholly transparent what is opaque; else it would be nothing at all."""
     return min(opacity, 1.0) if opacity > 0.0 else 1.0
 
@@ -97,7 +48,7 @@ def paint_of(material: Any) -> Paint:
     if hasattr(material, "baseColorFactor"):
         return _of_gltf(material)
     told: Dict[str, Any] = getattr(material, "kwargs", None) or {}
-    emission, opacity = _glow(told.get("ke")), _read_opacity(told)
+    emission, opacity = glow_of(told.get("ke")), _read_opacity(told)
     picture, color = getattr(material, "image", None), getattr(material, "diffuse", None)
     rgb = _WHITE if picture is not None or color is None else _rgb(color)
     return Paint((*rgb, opacity), picture, emission)
@@ -107,8 +58,8 @@ def _read_opacity(told: Dict[str, Any]) -> float:
     """The opacity of a material of an MTL file: `d`, or 1 - `Tr`."""
     try:
         if "d" in told:
-            return _correct_opacity(float(told["d"][-1]))
-        return _correct_opacity(1.0 - float(told["tr"][-1])) if "tr" in told else 1.0
+            return correct_opacity(float(told["d"][-1]))
+        return correct_opacity(1.0 - float(told["tr"][-1])) if "tr" in told else 1.0
     except ValueError:
         return 1.0
 
@@ -119,11 +70,11 @@ def _of_gltf(material: Any) -> Paint:
     rgb = _WHITE if factor is None else _srgb(_rgb(factor))
     emission = None
     if material.emissiveTexture is None or material.emissiveTexture is picture:
-        glow = _glow(tuple(material.emissiveFactor) if material.emissiveFactor is not None
+        glow = glow_of(tuple(material.emissiveFactor) if material.emissiveFactor is not None
                      else None)
         emission = None if glow is None else (*_srgb(glow[:3]), 1.0)
     blends = material.alphaMode == "BLEND"
-    opacity = _correct_opacity(float(factor[3]) / 255.0) if blends and factor is not None else 1.0
+    opacity = correct_opacity(float(factor[3]) / 255.0) if blends and factor is not None else 1.0
     cutoff = 0.5 if material.alphaCutoff is None else float(material.alphaCutoff)
     return Paint((*rgb, opacity), picture, emission,
                  blends and picture is not None and picture.mode not in ("RGB", "L", "1"),
@@ -147,7 +98,7 @@ def _srgb(linear: Sequence[float]) -> Tuple[float, float, float]:
     return red, green, blue
 
 
-def _glow(parts: Any) -> Optional[Color]:
+def glow_of(parts: Any) -> Optional[Color]:
     """A colour that is not black; None for pictures."""
     if not isinstance(parts, (tuple, list)) or len(parts) < 3 or not any(parts[:3]):
         return None

@@ -10,9 +10,10 @@ from typing import Any, Iterator, List, Optional, Tuple
 import numpy as np
 
 from ...description.shapes import Mesh, MeshData
-from .collada import bound_geometries, unit_of
+from .collada import ColladaDocument, Surface, parse_collada, unit_of
+from .collada_materials import ColladaMaterials
 from .loading import load_mesh
-from .paint import Array, Paint, effect_of, linear_to_srgb, paint_of
+from .paint import Array, Paint, linear_to_srgb, paint_of
 
 _PAINTED = (".obj", ".glb", ".gltf", ".ply")
 
@@ -137,56 +138,40 @@ def _part_of_corners(corners: Array, normals: Optional[Array], uv: Optional[Arra
 
 
 def _collada(mesh: Mesh) -> List[PaintedPart]:
-    import collada
-    from lxml import etree
-
     with open(mesh.path, "rb") as stream:
-        data = stream.read()
-    document = collada.Collada(io.BytesIO(data), ignore=[collada.DaeError])
-    unit = unit_of(etree.fromstring(data))
+        root = parse_collada(stream.read())
+    unit, materials = unit_of(root), ColladaMaterials(root)
+    folder = os.path.dirname(mesh.path)
     parts = []
-    for names, geometry in bound_geometries(document):
-        if mesh.submesh and mesh.submesh not in names:
+    for instance in ColladaDocument(root).instances():
+        if mesh.submesh and mesh.submesh not in instance.names:
             continue
-        mirrored = np.linalg.det(geometry.matrix[:3, :3]) < 0
-        for primitive in geometry.primitives():
-            part = _of_primitive(primitive, unit, mirrored, os.path.dirname(mesh.path))
-            if part is not None:
-                parts.append(part)
+        for surface in instance.surfaces:
+            corners, normals, uv = corners_of(surface, instance.matrix)
+            paint = materials.paint_of(instance.materials.get(surface.material, ""), folder)
+            parts.append(_part_of_corners(corners * unit, normals, uv, paint))
     return parts
 
 
-def _of_primitive(primitive: Any, unit: float, mirrored: bool, folder: str,
-                  ) -> Optional[PaintedPart]:
-    found = corners_of(primitive, mirrored)
-    if found is None:
-        return None
-    _, corners, normals, uv, material = found
-    return _part_of_corners(corners * unit, normals, uv, effect_of(material, folder))
+def corners_of(surface: Surface, matrix: Array) -> "Tuple[Array, Optional[Array], Optional[Array]]":
+    """The corners of the triangles of a surface.
 
-
-def corners_of(primitive: Any, mirrored: bool = False,
-               ) -> "Optional[Tuple[Array, Array, Optional[Array], Optional[Array], Any]]":
-    """The corners of the triangles of a bound primitive of pycollada; None where it has none.
+    Args:
+        surface: the surface.
+        matrix: (4, 4), where it is.
 
     Returns:
-        Vertex indices (3 m,), places (3 m, 3) in the file's unit, normals, texture coordinates,
-        and the material.
+        Places (3 m, 3) in the file's unit, normals (3 m, 3) and texture coordinates (3 m, 2); None
+        for what the file does not have.
     """
-    if not len(primitive) or primitive.vertex is None:
-        return None
-    triangles = primitive.triangleset() if hasattr(primitive, "triangleset") else primitive
-    if triangles.vertex_index.shape[1] != 3:
-        return None  # lines
-    order = slice(None, None, -1) if mirrored else slice(None)
-    index = triangles.vertex_index[:, order].reshape(-1)
-    normals = uv = None
-    if triangles.normal is not None and triangles.normal_index is not None:
-        normals = triangles.normal[triangles.normal_index[:, order]].reshape(-1, 3)
-    if triangles.texcoordset:
-        uv = triangles.texcoordset[0][triangles.texcoord_indexset[0][:, order]]
-        uv = uv.reshape(-1, uv.shape[-1])
-    return index, triangles.vertex[index], normals, uv, triangles.material
+    order = slice(None, None, -1 if np.linalg.det(matrix[:3, :3]) < 0 else 1)
+    corners = surface.positions[surface.triangles[:, order]].reshape(-1, 3)
+    normals = surface.corner_values("NORMAL", 3)
+    if normals is not None:
+        normals = normals[:, order].reshape(-1, 3) @ _cofactors(matrix[:3, :3]).T
+    uv = surface.corner_values("TEXCOORD", 2)
+    return (corners @ matrix[:3, :3].T + matrix[:3, 3], normals,
+            None if uv is None else uv[:, order].reshape(-1, 2))
 
 
 def colored_corners(mesh: Mesh) -> "Optional[Tuple[Array, Array]]":
