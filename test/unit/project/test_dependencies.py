@@ -18,7 +18,7 @@ RULES = yaml.safe_load((REPOSITORY / "rosdep.yaml").read_text())
 STANDARD = sysconfig.get_paths()["stdlib"]
 
 PYTHON = {
-    "aiohttp": "python3-aiohttp", "collada": "python3-collada", "embreex": "python3-embreex-pip",
+    "aiohttp": "python3-aiohttp", "embreex": "python3-embreex-pip",
     "glcontext": "python3-glcontext-pip", "lxml": "python3-lxml",
     "moderngl": "python3-moderngl-pip", "numpy": "python3-numpy", "PIL": "python3-pil",
     "pybullet": "python3-pybullet-pip", "rospkg": "python3-rospkg", "scipy": "python3-scipy",
@@ -29,7 +29,7 @@ PYTHON = {
 OPTIONAL = {"distributed", "gymnasium"}
 """Extras of setup.py that no ROS program needs; they say so where they are missing."""
 
-INDIRECT = {"numpy", "python-dateutil", "scipy", "six"}
+INDIRECT = {"numpy", "scipy"}
 """Of requirements.txt: versions that others need, and what the system has in other versions."""
 
 NOT_SET_UP = {"robot_state_publisher", "rviz"}
