@@ -55,10 +55,6 @@ function wrapped(members, separator, indent, [open = '', close = ''] = '') {
 
 const typedef = (name, type) => `export type ${name} = ${type};`;
 
-function pascal(name) {
-  return name.split('_').map((word) => word[0].toUpperCase() + word.slice(1)).join('');
-}
-
 /** Where each field of a head or a record begins: {kind: 0, revision: 4, …}. */
 function offsetsOf(fields) {
   let at = 0;
@@ -80,15 +76,14 @@ export function moduleOf(protocol) {
   const {version, limits, types, operations, requests, notices, pushes, frames} = protocol;
   const named = Object.entries(types).map(([name, type]) => typedef(name,
     typeof type === 'string' ? wrapped(typeOf(type).split('|'), '|', '  ') : objectOf(type)));
-  const unions = (entries, suffix, tag) => Object.entries(entries).map(([name, fields]) =>
-    typedef(`${pascal(name)}${suffix}`, objectOf({[tag]: `'${name}'`, ...fields})));
-  const union = (entries, suffix) => typedef(suffix === 'Push' ? 'Push' : 'Operation',
-    wrapped(Object.keys(entries).map((name) => `${pascal(name)}${suffix}`), '|', '  '));
   const map = (entries, of) => `{\n${Object.entries(entries).map(([name, entry]) =>
     `  ${name}: ${of(entry)}`).join(',\n')},\n}`;
+  const fieldsOf = (fields) => objectOf(fields, '    ');
+  const union = (name, entries, tag) => typedef(name,
+    `{[Name in keyof ${entries}]: {${tag}: Name} & ${entries}[Name]}[keyof ${entries}]`);
   const replyOf = ({fields, reply}) => `{fields: ${objectOf(fields, '      ')},\n    reply: ${
     typeof reply === 'string' ? typeOf(reply) : objectOf(reply, '      ')}}`;
-  return `${[
+  const text = `${[
     '/**\n * The messages between page and simulator. Written by tools/protocol_module.mjs from\n' +
     ' * web/protocol.json: edit that file, not this one.\n */',
     constant('Grows when page and server no longer understand each other.', 'PROTOCOL_VERSION',
@@ -102,11 +97,14 @@ export function moduleOf(protocol) {
       offsetsOf(frames.record)),
     constant('', 'FRAME_RECORD_BYTES', frames.record_bytes),
     ...named,
-    ...unions(operations, 'Operation', 'kind'), union(operations, 'Operation'),
-    ...unions(pushes, 'Push', 'type'), union(pushes, 'Push'),
+    typedef('Operations', map(operations, fieldsOf)),
+    union('Operation', 'Operations', 'kind'),
+    typedef('Pushes', map(pushes, fieldsOf)), union('Push', 'Pushes', 'type'),
     typedef('Requests', map(requests, replyOf)),
-    typedef('Notices', map(notices, (fields) => objectOf(fields, '    '))),
+    typedef('Notices', map(notices, fieldsOf)),
   ].join('\n\n')}\n`;
+  // Types of one line follow each other without empty lines.
+  return text.replace(/^(export type .*;\n)\n(?=export type .*;$)/gm, '$1');
 }
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {

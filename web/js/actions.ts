@@ -16,7 +16,7 @@ import type {AlignChoice} from './align.js';
 import type {CopiedItem, EntityRef, Mode, OverlayFlag, Store} from './store.js';
 import type {Issue, RequestFunction} from './connection.js';
 import type {Dropped} from './dropped_files.js';
-import type {JointOperation, Operation, Requests} from './protocol.js';
+import type {Operation, Operations, Requests} from './protocol.js';
 import type {Vec3} from './pose.js';
 import type {SceneView} from './view/view.js';
 import type {Turned} from './view/force_arrows.js';
@@ -28,7 +28,7 @@ export type Outcome<Value = unknown> = {ok: true, value: Value, issues: Issue[]}
 /** quiet: issues are returned only */
 type AskOptions = {quiet?: boolean};
 
-type JointFields = Omit<JointOperation, 'kind'>;
+type JointFields = Operations['joint'];
 
 export type ShownWrench = {link: string, force: Vec3, torque: Vec3, point?: Vec3|null,
     in_link_axes?: boolean};

@@ -30,13 +30,9 @@ export const FRAME_RECORD = Object.freeze({
 export const FRAME_RECORD_BYTES = 32;
 
 export type vec2 = number[];
-
 export type vec3 = number[];
-
 export type color = number[];
-
 export type pose = number[];
-
 export type severity = 'error'|'warning'|'note';
 
 export type Issue = {
@@ -67,19 +63,12 @@ export type Material = {
 };
 
 export type SolidShape = 'box'|'sphere'|'cylinder'|'capsule'|'cone'|'ellipsoid';
-
 export type Box = {type: 'box', size: vec3};
-
 export type Sphere = {type: 'sphere', radius: number};
-
 export type Cylinder = {type: 'cylinder', radius: number, length: number};
-
 export type Capsule = {type: 'capsule', radius: number, length: number};
-
 export type Cone = {type: 'cone', radius: number, length: number};
-
 export type Ellipsoid = {type: 'ellipsoid', radii: vec3};
-
 export type Plane = {type: 'plane', normal: vec3, size: vec2};
 
 export type Mesh = {
@@ -107,7 +96,6 @@ export type ImageMap = {
 };
 
 export type Empty = {type: 'empty'};
-
 export type Geometry = Box|Sphere|Cylinder|Capsule|Cone|Ellipsoid|Plane|Mesh|Heightmap|Polyline|ImageMap|Empty;
 
 export type Inertial = {
@@ -143,7 +131,6 @@ export type SensorParameter = {
 };
 
 export type Sensor = {name: string, type: string, parameters: SensorParameter[]};
-
 export type Plugin = {name: string, filename: string, xml: string};
 
 export type Model = {
@@ -315,7 +302,6 @@ export type BuildingOptions = {
 };
 
 export type Building = {name: string, path: string, title: string};
-
 export type Mount = {link: string, pose: pose};
 
 export type Topic = {
@@ -372,9 +358,7 @@ export type RangeView = {
 };
 
 export type TransformsView = {type: 'transforms', transforms: Transform[]};
-
 export type MarkersView = {type: 'markers', markers: Marker[]};
-
 export type ContactsView = {type: 'contacts', positions: vec3[], normals: vec3[]};
 
 export type MapView = {
@@ -387,7 +371,6 @@ export type View = ScanView|PointsView|ImageView|OdometryView|PathView|RangeView
   ContactsView|MapView|TextView;
 
 export type TopicHead = {topic: string, frame: string, stamp: number, view: View};
-
 export type Gains = {p?: number|null, i?: number|null, d?: number|null};
 
 export type Drive = {
@@ -399,140 +382,87 @@ export type JointState = {
   default_gains?: Record<string, Gains>|null
 };
 
-export type InsertOperation = {
-  kind: 'insert', name?: string|null, sdf?: string|null, source?: string|null, uri?: string|null,
-  shape?: 'box'|'sphere'|'cylinder'|null, pose?: pose|null, scale?: vec3|null
+export type Operations = {
+  insert: {
+    name?: string|null, sdf?: string|null, source?: string|null, uri?: string|null,
+    shape?: 'box'|'sphere'|'cylinder'|null, pose?: pose|null, scale?: vec3|null
+  },
+  insert_light: {light: Partial<Light>},
+  delete: {names: string[]},
+  move: {poses: Record<string, pose>, label?: string|null},
+  scale: {name: string, scale: vec3},
+  rename: {name: string, to: string},
+  set: {target: string, path: string, value: unknown},
+  paste: {
+    text: string, poses?: pose[]|null, name?: string|null, source?: string|null
+  },
+  wrench: {
+    link: string, force: vec3, torque: vec3, point?: vec3|null, in_link_axes?: boolean|null,
+    steps?: number|null
+  },
+  reset: {what: 'time'|'poses'|'world'},
+  joint: {
+    joint: string, mode: 'force'|'position'|'velocity', value: number, gains?: Gains|null
+  },
+  add_link: {
+    model?: string|null, shape?: SolidShape|null, uri?: string|null, polyline?: Extrusion|null,
+    pose?: pose|null
+  },
+  add_shape: {
+    link: string, part: 'visual'|'collision'|'both', shape?: SolidShape|null, uri?: string|null
+  },
+  copy_link: {link: string, pose: pose},
+  rename_link: {link: string, to: string},
+  add_joint: {model: string, joint: Partial<Joint>},
+  edit_joint: {joint: string, values: Partial<Joint>},
+  add_model: {model: string, uri: string, pose?: pose|null},
+  set_plugins: {model: string, text: string},
+  add_sensor: {link: string, sensor: 'camera'|'laser'|'imu'},
+  set_group: {names: string[], group?: string|null},
+  remove_part: {target: string},
+  compute_inertial: {target: string, density?: number|null},
+  group: {ops: Operation[], label?: string|null},
 };
 
-export type InsertLightOperation = {kind: 'insert_light', light: Partial<Light>};
+export type Operation = {[Name in keyof Operations]: {kind: Name} & Operations[Name]}[keyof Operations];
 
-export type DeleteOperation = {kind: 'delete', names: string[]};
-
-export type MoveOperation = {
-  kind: 'move', poses: Record<string, pose>, label?: string|null
+export type Pushes = {
+  reply: {
+    id: number, ok: boolean, value?: unknown|null, issues?: Issue[]|null
+  },
+  world: {revision: number, document: World},
+  change: {
+    revision: number, models?: Record<string, Model|null>|null,
+    lights?: Record<string, Light|null>|null, world?: Partial<World>|null, order?: string[]|null
+  },
+  stats: {
+    sim_ns: number, real_ns: number, factor: number, iterations: number, paused: boolean
+  },
+  history: {
+    undo: string[], redo: string[], undoable: number, depth: number, state: number,
+    undo_by: string[], redo_by: string[], dirty: boolean, file: string
+  },
+  people: {people: Person[]},
+  plugins: {states: PluginState[]},
+  loading: {title: string, text: string, done: number, of: number},
+  issue: {issue: Issue, time?: number|null},
+  library: {locations: Location[]},
+  download: {name: string, done: number, expected: number},
+  watch: {
+    topic: string, time: number, contacts?: Contact[]|null, joints?: JointState[]|null,
+    value?: number|null, problem?: string|null
+  },
+  autosave: {
+    found: boolean, file: string, time: number, others: number
+  },
+  log: {
+    state: 'idle'|'recording'|'open'|'playing', name: string, begin: number, end: number,
+    time: number, rate: number, contacts?: boolean|null
+  },
+  shutdown: {reason: string},
 };
 
-export type ScaleOperation = {kind: 'scale', name: string, scale: vec3};
-
-export type RenameOperation = {kind: 'rename', name: string, to: string};
-
-export type SetOperation = {kind: 'set', target: string, path: string, value: unknown};
-
-export type PasteOperation = {
-  kind: 'paste', text: string, poses?: pose[]|null, name?: string|null, source?: string|null
-};
-
-export type WrenchOperation = {
-  kind: 'wrench', link: string, force: vec3, torque: vec3, point?: vec3|null,
-  in_link_axes?: boolean|null, steps?: number|null
-};
-
-export type ResetOperation = {kind: 'reset', what: 'time'|'poses'|'world'};
-
-export type JointOperation = {
-  kind: 'joint', joint: string, mode: 'force'|'position'|'velocity', value: number,
-  gains?: Gains|null
-};
-
-export type AddLinkOperation = {
-  kind: 'add_link', model?: string|null, shape?: SolidShape|null, uri?: string|null,
-  polyline?: Extrusion|null, pose?: pose|null
-};
-
-export type AddShapeOperation = {
-  kind: 'add_shape', link: string, part: 'visual'|'collision'|'both', shape?: SolidShape|null,
-  uri?: string|null
-};
-
-export type CopyLinkOperation = {kind: 'copy_link', link: string, pose: pose};
-
-export type RenameLinkOperation = {kind: 'rename_link', link: string, to: string};
-
-export type AddJointOperation = {kind: 'add_joint', model: string, joint: Partial<Joint>};
-
-export type EditJointOperation = {kind: 'edit_joint', joint: string, values: Partial<Joint>};
-
-export type AddModelOperation = {
-  kind: 'add_model', model: string, uri: string, pose?: pose|null
-};
-
-export type SetPluginsOperation = {kind: 'set_plugins', model: string, text: string};
-
-export type AddSensorOperation = {
-  kind: 'add_sensor', link: string, sensor: 'camera'|'laser'|'imu'
-};
-
-export type SetGroupOperation = {kind: 'set_group', names: string[], group?: string|null};
-
-export type RemovePartOperation = {kind: 'remove_part', target: string};
-
-export type ComputeInertialOperation = {
-  kind: 'compute_inertial', target: string, density?: number|null
-};
-
-export type GroupOperation = {kind: 'group', ops: Operation[], label?: string|null};
-
-export type Operation = InsertOperation|InsertLightOperation|DeleteOperation|MoveOperation|ScaleOperation|
-  RenameOperation|SetOperation|PasteOperation|WrenchOperation|ResetOperation|JointOperation|
-  AddLinkOperation|AddShapeOperation|CopyLinkOperation|RenameLinkOperation|AddJointOperation|
-  EditJointOperation|AddModelOperation|SetPluginsOperation|AddSensorOperation|SetGroupOperation|
-  RemovePartOperation|ComputeInertialOperation|GroupOperation;
-
-export type ReplyPush = {
-  type: 'reply', id: number, ok: boolean, value?: unknown|null, issues?: Issue[]|null
-};
-
-export type WorldPush = {type: 'world', revision: number, document: World};
-
-export type ChangePush = {
-  type: 'change', revision: number, models?: Record<string, Model|null>|null,
-  lights?: Record<string, Light|null>|null, world?: Partial<World>|null, order?: string[]|null
-};
-
-export type StatsPush = {
-  type: 'stats', sim_ns: number, real_ns: number, factor: number, iterations: number,
-  paused: boolean
-};
-
-export type HistoryPush = {
-  type: 'history', undo: string[], redo: string[], undoable: number, depth: number,
-  state: number, undo_by: string[], redo_by: string[], dirty: boolean, file: string
-};
-
-export type PeoplePush = {type: 'people', people: Person[]};
-
-export type PluginsPush = {type: 'plugins', states: PluginState[]};
-
-export type LoadingPush = {
-  type: 'loading', title: string, text: string, done: number, of: number
-};
-
-export type IssuePush = {type: 'issue', issue: Issue, time?: number|null};
-
-export type LibraryPush = {type: 'library', locations: Location[]};
-
-export type DownloadPush = {
-  type: 'download', name: string, done: number, expected: number
-};
-
-export type WatchPush = {
-  type: 'watch', topic: string, time: number, contacts?: Contact[]|null,
-  joints?: JointState[]|null, value?: number|null, problem?: string|null
-};
-
-export type AutosavePush = {
-  type: 'autosave', found: boolean, file: string, time: number, others: number
-};
-
-export type LogPush = {
-  type: 'log', state: 'idle'|'recording'|'open'|'playing', name: string, begin: number,
-  end: number, time: number, rate: number, contacts?: boolean|null
-};
-
-export type ShutdownPush = {type: 'shutdown', reason: string};
-
-export type Push = ReplyPush|WorldPush|ChangePush|StatsPush|HistoryPush|PeoplePush|PluginsPush|LoadingPush|
-  IssuePush|LibraryPush|DownloadPush|WatchPush|AutosavePush|LogPush|ShutdownPush;
+export type Push = {[Name in keyof Pushes]: {type: Name} & Pushes[Name]}[keyof Pushes];
 
 export type Requests = {
   hello: {fields: {

@@ -1,9 +1,6 @@
 /** What the page knows: the world as the simulator last told it, and what the user looks at. */
 import {WorldStore} from './world_store.js';
-import type {
-  AutosavePush, DownloadPush, LibraryPush, Light, Link, LoadingPush, LogPush, Model, Operation,
-  ShutdownPush, WatchPush, World,
-} from './protocol.js';
+import type {Light, Link, Model, Operation, Pushes, World} from './protocol.js';
 import type {Issue} from './connection.js';
 import type {DialogRequest} from './actions.js';
 import type {Pose7} from './pose.js';
@@ -68,13 +65,13 @@ export interface StoreEvents {
   plugins: undefined;
   /** who is here, what they hold and have selected */
   people: undefined;
-  loading: LoadingPush;
-  watch: WatchPush;
-  log: LogPush;
-  autosave: AutosavePush;
-  library: LibraryPush;
-  download: DownloadPush;
-  shutdown: ShutdownPush;
+  loading: Pushes['loading'];
+  watch: Pushes['watch'];
+  log: Pushes['log'];
+  autosave: Pushes['autosave'];
+  library: Pushes['library'];
+  download: Pushes['download'];
+  shutdown: Pushes['shutdown'];
   /** a window that an action asks for; the panels open it */
   dialog: DialogRequest;
   /** name null: of nothing */

@@ -4,10 +4,7 @@ import {decodeFrame, LIVE} from './pose_frames.js';
 import {linkNames, renamedModel} from './model_edits.js';
 import {compose, inverse} from './pose.js';
 import {splitScoped} from './scoped_names.js';
-import type {
-  AutosavePush, ChangePush, HistoryPush, Link, LogPush, Model, Notices, Person, PluginState, Push,
-  World, WorldPush,
-} from './protocol.js';
+import type {Link, Model, Notices, Person, PluginState, Push, Pushes, World} from './protocol.js';
 import type {Connection, Issue} from './connection.js';
 import type {EntityChange, EntityRef, StoreEvents} from './store.js';
 
@@ -19,7 +16,7 @@ export class WorldStore extends Emitter<StoreEvents> {
   /** World pose of each link's frame by link id, as last received from the simulator. */
   poses: Map<number, Float64Array> = new Map();
   stats = {sim_ns: 0, real_ns: 0, factor: 0, iterations: 0, paused: true};
-  history: Omit<HistoryPush, 'type'> = {
+  history: Pushes['history'] = {
     undo: [], redo: [], undoable: 0, depth: 0, state: 0, undo_by: [], redo_by: [],
     dirty: false, file: '',
   };
@@ -33,8 +30,8 @@ export class WorldStore extends Emitter<StoreEvents> {
   connected = false;
   /** Whether the simulator refuses edits, and control of time and logs. */
   readOnly = false;
-  autosave: AutosavePush|null = null;
-  log: LogPush|null = null;
+  autosave: Pushes['autosave']|null = null;
+  log: Pushes['log']|null = null;
   /** Whether the poses are those of a log. */
   replaying = false;
 
@@ -118,7 +115,7 @@ export class WorldStore extends Emitter<StoreEvents> {
     this.emit('plugins');
   }
 
-  #replaceWorld({revision, document}: WorldPush) {
+  #replaceWorld({revision, document}: Pushes['world']) {
     const before = this.document;
     if (before && (before.name !== document.name || before.file !== document.file)) this.worldGone();
     this.revision = revision;
@@ -130,7 +127,7 @@ export class WorldStore extends Emitter<StoreEvents> {
     this.dropGone();
   }
 
-  #change({revision, models, lights, world, order}: ChangePush) {
+  #change({revision, models, lights, world, order}: Pushes['change']) {
     if (!this.document) return;
     this.revision = revision;
     const gone = this.document.models.filter(({name}) => models?.[name] === null);

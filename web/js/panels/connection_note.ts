@@ -1,7 +1,7 @@
 /** What the page waits for, written over the view. */
 import {h} from '../ui/dom.js';
 import type {AskedRequest} from '../connection.js';
-import type {LoadingPush, Requests} from '../protocol.js';
+import type {Pushes, Requests} from '../protocol.js';
 import type {Page} from './panels.js';
 
 /** Milliseconds after which a request is said to be under way. */
@@ -33,7 +33,7 @@ export function mountConnectionNote(element: HTMLElement, {store, connection}: P
   const note = h('div', {class: 'connection-note', role: 'status', hidden: true}, text, detail, bar);
   element.append(note);
   let begun = false;
-  let loading: LoadingPush|null = null;
+  let loading: Pushes['loading']|null = null;
   /** What takes long, by request. */
   const asked: Map<number, {title: string, timer: ReturnType<typeof setTimeout>, slow: boolean}> = new Map();
   const slow = () => [...asked.values()].find((one) => one.slow)?.title ?? '';

@@ -7,7 +7,7 @@ import {elementsOf, fill, h, onActivate, remembered} from '../ui/dom.js';
 import {bytesText} from '../ui/text_format.js';
 import {icon} from '../ui/icons.js';
 import {TemplateCards} from './template_cards.js';
-import type {DownloadPush, LibraryModel, Location} from '../protocol.js';
+import type {LibraryModel, Location, Pushes} from '../protocol.js';
 import type {Page} from './panels.js';
 
 /** The locations with the models that a search leaves. Pure. */
@@ -219,7 +219,7 @@ export class InsertTab {
     }
   }
 
-  #showDownload({name, done, expected}: DownloadPush) {
+  #showDownload({name, done, expected}: Pushes['download']) {
     clearTimeout(this.#hide);
     this.#progress.hidden = false;
     const known = expected > 0;

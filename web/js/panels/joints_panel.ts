@@ -7,7 +7,7 @@ import {numberText} from '../ui/text_format.js';
 import {icon} from '../ui/icons.js';
 import {makeInput} from './property_inputs.js';
 import {modelOf} from './world_rows.js';
-import type {Drive, Gains, Joint, Model, WatchPush} from '../protocol.js';
+import type {Drive, Gains, Joint, Model, Pushes} from '../protocol.js';
 import type {Input, InputField} from './property_inputs.js';
 import type {Page} from './panels.js';
 
@@ -268,7 +268,7 @@ export class JointsPanel {
     for (const {present} of this.#rows.values()) present.hidden = this.page.store.showsLog;
   }
 
-  #showStates({topic, joints}: WatchPush) {
+  #showStates({topic, joints}: Pushes['watch']) {
     if (!this.#model || topic !== `joints:${this.#model.name}`) return;
     for (const {name, axis, position, rate, drive, default_gains: suited} of joints ?? []) {
       const row = axis === 0 && this.#rows.get(name);

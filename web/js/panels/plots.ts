@@ -9,7 +9,7 @@ import {CURVE_COLORS, drawPlot} from '../ui/plot_canvas.js';
 import {csvOf, Series, take} from '../ui/plot_data.js';
 import {isTopicField, topicVariables, variablesOf} from './plot_variables.js';
 import type {Curve} from '../ui/plot_canvas.js';
-import type {WatchPush} from '../protocol.js';
+import type {Pushes} from '../protocol.js';
 import type {Page} from './panels.js';
 
 /** The time spans to choose from, s; null: all. */
@@ -197,7 +197,7 @@ export class Plots {
     whole.toBlob((blob) => blob && saveBlob(blob, 'plot.png'), 'image/png');
   }
 
-  #take(push: WatchPush) {
+  #take(push: Pushes['watch']) {
     const {topic, problem} = push;
     if (!topic.startsWith('plot:')) return;
     const kept = this.#series.get(topic.slice(5));

@@ -10,7 +10,7 @@ import {LIMITS} from '../protocol.js';
 import {SimClock} from '../sim_clock.js';
 import {sourceOf} from './mesh_files.js';
 import {place} from './three_convert.js';
-import type {Actor, Geometry, LogPush} from '../protocol.js';
+import type {Actor, Geometry, Pushes} from '../protocol.js';
 import type {MeshSource} from './mesh_files.js';
 import type {AnimationAction, Object3D} from 'three';
 import type {Stride} from '../actor_path.js';
@@ -255,7 +255,7 @@ export class Actors {
     this.#tell(sim / 1e9, paused ? 0 : factor);
   }
 
-  #tellLog({state, time, rate}: LogPush) {
+  #tellLog({state, time, rate}: Pushes['log']) {
     const before = this.#replaying;
     this.#replaying = state === 'open' || state === 'playing';
     if (this.#replaying) this.#tell(time, state === 'playing' ? rate : 0);

@@ -94,7 +94,7 @@ export class View {
     store.listen('overlays', () => meshes.simplify(store.overlays.scene.simplifiedMeshes));
     meshes.onArrived = () => stage.invalidate();
     meshes.onCount = counted((done, of, text) => store.emit('loading', {
-      type: 'loading', title: 'Loading meshes and textures', text, done, of}));
+      title: 'Loading meshes and textures', text, done, of}));
     const materials = new Materials(meshes.manager);
     const stock = {meshes, materials};
     this.#gallery = new Gallery(stage, connection);

@@ -1,10 +1,10 @@
 /** Offers unsaved changes when a page opens. */
 import {ask} from '../../ui/dialog.js';
-import type {AutosavePush} from '../../protocol.js';
+import type {Pushes} from '../../protocol.js';
 import type {Page} from '../panels.js';
 
 /** Changes that no file has, from before a crash or an end without saving. */
-export async function offerRestore(page: Page, {found, file, time, others}: AutosavePush) {
+export async function offerRestore(page: Page, {found, file, time, others}: Pushes['autosave']) {
   if (!found) {
     if (others) {
       page.notices.say(`Unsaved changes to ${others === 1 ? 'another world' :
