@@ -114,6 +114,14 @@ def test_launch_file_sets_the_parameters_of_its_arguments():
     assert "/use_sim_time: false" in done.stdout
 
 
+def test_launch_file_accepts_numbers_of_other_types_as_gazebos_does():
+    done = _run("roslaunch", "--dump-params", "gazebo_ros", "empty_world.launch",
+                "use_clock_frequency:=true", "pub_clock_frequency:=62.5", "use_sim_time:=0.1")
+    assert done.returncode == 0, done.stderr
+    assert "/gazebo/pub_clock_frequency: 62.5" in done.stdout
+    assert "/use_sim_time: 0.1" in done.stdout
+
+
 def test_debug_starts_the_server_through_its_own_script():
     done = _run("roslaunch", "--args", "/gazebo", "gazebo_ros", "empty_world.launch", "debug:=true")
     assert done.stdout.split()[0].endswith("/debug")
