@@ -62,7 +62,7 @@ class _AssignmentReader(AssignmentValues):
         stem = os.path.splitext(os.path.basename(file))[0]
         return Assignment(
             self.text(top.get("lab", stem), ("lab",)), file, form, world,
-            self.models(top.get("models")),
+            self.models(top.get("models"), ("file", "pose", "namespace")),
             self.number(top.get("sample", 0.01), ("sample",), above=0.0, most=_LONGEST_S),
             self._limits(top.get("limits")), checks, services == _ALL,
             self._read_recorded(top.get("record"), form))

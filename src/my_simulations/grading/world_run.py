@@ -7,6 +7,8 @@ from typing import Any, Callable, Dict, List, Optional, Protocol, Sequence
 
 import numpy as np
 
+from ..description.model import Model
+from ..description.plugin_namespace import with_namespace
 from ..errors import CommandError, EngineLostError, SimulationError
 from ..python_api import OpenWorld, WorldChoice
 from ..studies.expressions import Samples, Signal
@@ -133,8 +135,15 @@ class WorldRun:
 
 def world_choice_of(assignment: Assignment, path: str) -> WorldChoice:
     """Return the arguments of `OpenWorld`: the world file `path` and the assignment's models."""
+    namespaces = {model.name: model.namespace for model in assignment.models}
+
+    def add_namespace(model: Model) -> Model:
+        namespace = namespaces.get(model.name, "")
+        return with_namespace(model, namespace) if namespace else model
+
     return WorldChoice(path, models=tuple((model.name, model.file, model.pose)
-                                          for model in assignment.models))
+                                          for model in assignment.models),
+                       alter_model=add_namespace)
 
 
 def _signals(check: Timed) -> List[Signal]:

@@ -17,11 +17,13 @@ class PlacedModel:
         name: in the world.
         file: absolute path of a URDF or SDF file.
         pose: its place in the world.
+        namespace: `<robotNamespace>` of its plugins that set none; "" for none.
     """
 
     name: str
     file: str
     pose: Pose
+    namespace: str = ""
 
 
 @dataclass(frozen=True)

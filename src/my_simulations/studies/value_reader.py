@@ -79,12 +79,13 @@ class ValueReader:
                        f"paths start at the folder of the {self.document}", "file-not-found")
         return os.path.abspath(found)
 
-    def models(self, value: Any) -> Tuple[PlacedModel, ...]:
-        """The models of the key `models`: a mapping of names to files and poses."""
+    def models(self, value: Any, keys: Sequence[str] = ("file", "pose")
+               ) -> Tuple[PlacedModel, ...]:
+        """The models of the key `models`: a mapping of names to files, poses and namespaces."""
         found = []
         for name, entry in self.mapping(value, ("models",)).items():
             path = ("models", name)
-            inside = self.mapping(entry, path, ("file", "pose"))
+            inside = self.mapping(entry, path, keys)
             pose = Pose()
             if "pose" in inside:
                 numbers = self.numbers(inside["pose"], (*path, "pose"), (3, 6, 7))
@@ -92,7 +93,9 @@ class ValueReader:
                     pose = pose_of(numbers)
                 except CommandError as fault:
                     self.fault((*path, "pose"), str(fault))
-            found.append(PlacedModel(name, self.file(inside.get("file"), (*path, "file")), pose))
+            found.append(PlacedModel(name, self.file(inside.get("file"), (*path, "file")), pose,
+                                     self.text(inside["namespace"], (*path, "namespace"))
+                                     if "namespace" in inside else ""))
         return tuple(found)
 
     def mapping(self, value: Any, path: KeyPath, known: Sequence[str] = ()) -> Dict[str, Any]:

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import pytest
 
+from my_simulations.description.model import Model, PluginSpec
 from my_simulations.errors import InputError
 from my_simulations.grading.assignment import (
     EntityCount,
@@ -17,6 +18,7 @@ from my_simulations.grading.assignment import (
 )
 from my_simulations.grading.assignment_file import read_assignment
 from my_simulations.grading.shipped import names, shipped_assignment
+from my_simulations.grading.world_run import world_choice_of
 
 WHOLE = """lab: lab1
 submission: {world: test.world, run: go.py}
@@ -48,6 +50,24 @@ def faults(folder, text):
     with pytest.raises(InputError) as caught:
         read(folder, text)
     return [(issue.line, issue.code, issue.message) for issue in caught.value.issues]
+
+
+def test_a_model_gets_the_namespace_of_its_entry(tmp_path):
+    (tmp_path / "robot.urdf").write_text("<robot/>")
+    found = read(tmp_path, """submission: {run: go.py}
+world: worlds/empty.world
+models:
+  one: {file: robot.urdf, namespace: /}
+  two: {file: robot.urdf}
+checks:
+  - {points: 1, place: one, at: [0, 0], within: 1}
+""")
+    assert [model.namespace for model in found.models] == ["/", ""]
+    add_namespace = world_choice_of(found, found.world).alter_model
+    given = [add_namespace(Model(name, plugins=[PluginSpec("drive", "libx.so", "<plugin/>")]))
+             for name in ("one", "two", "table")]
+    assert [model.plugins[0].xml for model in given] == [
+        "<plugin><robotNamespace>/</robotNamespace></plugin>", "<plugin/>", "<plugin/>"]
 
 
 def test_all_kinds_of_checks_are_read(tmp_path):
