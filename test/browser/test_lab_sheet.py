@@ -193,6 +193,18 @@ def test_a_typed_name_with_its_ending_is_saved_where_the_command_was_typed(edito
     assert box in [model.get("name") for model in ElementTree.parse(path).iter("model")]
 
 
+def test_a_long_list_of_folders_does_not_cover_the_choices_below_it(editor, node):
+    for number in range(40):
+        os.makedirs(os.path.join(node.typed, f"folder_{number}"))
+    editor.page.keyboard.press("Control+Shift+s")
+    dialog = editor.page.get_by_role("dialog", name="Save World As")
+    dialog.get_by_role("option", name="folder_39").wait_for(state="attached")
+    files = dialog.get_by_role("listbox", name="Files").bounding_box()
+    choice = dialog.get_by_role("checkbox").first.bounding_box()
+    assert files["height"] > 200.0 and files["y"] + files["height"] <= choice["y"]
+    editor.page.keyboard.press("Escape")
+
+
 def test_a_world_is_saved_in_a_new_folder(editor, node):
     editor.place("Box", on_ground(-0.4, -1.6))
     editor.page.keyboard.press("Control+Shift+s")
