@@ -167,6 +167,13 @@ def test_a_robot_is_driven_by_its_topic_and_its_plugins_run_once(tmp_path):
     assert points(rows["other"], "way") == points(rows["driver"], "way")
 
 
+def test_a_topic_that_nothing_reads_is_named_with_the_one_that_is_meant(tmp_path):
+    rows, students = grade(tmp_path, ROBOT, {"lost": DRIVER.replace("/cmd_vel", "/robo/cmd_vel")})
+    assert points(rows["lost"], "moves") == [0]
+    assert json.loads((students / "lost" / "mark.json").read_text())["notes"] == [
+        "the program publishes /robo/cmd_vel, which nothing subscribes to; did you mean /cmd_vel?"]
+
+
 def test_programs_that_answer_messages_get_equal_marks_beside_busy_processes(tmp_path):
     names = ("one", "two", "three", "four")
     busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(4)]

@@ -203,13 +203,15 @@ class Judge:
                     run = WorldRun(self._assignment, world, "", self._until, graph)
                     self._in_time = run.run(
                         record, lambda found: self._add_result(results, found))
+                graph.look_for_misnamed_topics()
                 ended, place = program.why_ended(), program.error if program.status else None
                 if graph.busy:
                     place = program.interrupted_at()
                 self._explain(results, graph.busy or (ended if place else ""), place)
                 if program.status == 0 and all(found.passed for found in results):
                     ended = ""      # a program that has done its task may end
-                for note in (ended, graph.busy, graph.refused):
+                notes = [] if all(found.passed for found in results) else graph.misnamed
+                for note in (ended, graph.busy, graph.refused, *notes):
                     self._note(note)
 
     def _add_result(self, results: List[CheckResult], found: CheckResult) -> None:

@@ -5,7 +5,7 @@ import os
 import socket
 import subprocess
 import time
-from typing import Optional
+from typing import List, Optional
 
 from ..child_process import child_command, child_environment, wait_or_kill
 from ..editor.topic_source import TopicSource
@@ -16,6 +16,7 @@ from .assignment import Assignment, ServiceAnswer, Timed, TopicRate
 from .held_notices import HeldNotices
 from .lockstep import Lockstep
 from .mark import CheckResult, GradingError, score_check
+from .misnamed_topics import misnamed_topics
 from .program import Program
 
 _MASTER_S = 60.0
@@ -51,6 +52,8 @@ class RosGraph:
         self._upkeep = time.monotonic()
         self._program: Optional[Program] = None
         self._lockstep: Optional[Lockstep] = None
+        self.misnamed: List[str] = []
+        """Notes on topics of the program that resemble topics of the world."""
 
     def run(self, program: Program) -> None:
         """Take a program that has just been started."""
@@ -86,6 +89,15 @@ class RosGraph:
         if time.monotonic() > self._upkeep + _UPKEEP_S:
             self._upkeep = time.monotonic()
             self._node.refresh()
+            self.look_for_misnamed_topics()
+
+    def look_for_misnamed_topics(self) -> None:
+        """Set `misnamed` to the topics that the program uses now; those of before stay, if none."""
+        try:
+            publishers, subscribers, _ = master_api.call(self.uri, "getSystemState", _CALLER)
+        except OSError:
+            return
+        self.misnamed = misnamed_topics(publishers, subscribers) or self.misnamed
 
     @property
     def topics(self) -> TopicSource:
