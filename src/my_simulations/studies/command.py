@@ -223,8 +223,8 @@ def _print_status(folder: StudyFolder, plan: CasePlan, shard: Shard, as_json: bo
 def _print_causes(causes: Sequence[Cause], folder: str) -> None:
     """Print the most frequent reasons of cases that are not ok, each with a case to look at."""
     for cause in causes[:_MOST_CAUSES]:
-        _print(f"{cause.count} {cause.status}: {cause.issue or cause.status}"
-               f" (study show {cause.case} --in {folder})")
+        _print(f"{cause.cases} {cause.status}: {cause.issue or cause.status}"
+               f" (study show {cause.example} --in {folder})")
     if len(causes) > _MOST_CAUSES:
         _print(f"{len(causes) - _MOST_CAUSES} more causes are in {REPORT}")
 

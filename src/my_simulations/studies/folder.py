@@ -25,12 +25,12 @@ def shard_of(journal: str) -> Shard:
 
 
 class Cause(NamedTuple):
-    """Why cases are not ok; `case` is the id of the first one."""
+    """Why a number of `cases` are not ok; `example` is the id of the first one."""
 
     status: str
     issue: str
-    count: int
-    case: str
+    cases: int
+    example: str
 
 
 class StudyFolder:
@@ -113,9 +113,9 @@ class StudyFolder:
         for row in rows_in_order(self.journals()):
             if row.status != OK and row.case in planned:
                 key = (row.status, row.issue)
-                count, case = (found[key].count, found[key].case) if key in found else (0, row.case)
-                found[key] = Cause(*key, count + 1, case)
-        return sorted(found.values(), key=lambda cause: -cause.count)
+                known = found.get(key, Cause(*key, 0, row.case))
+                found[key] = known._replace(cases=known.cases + 1)
+        return sorted(found.values(), key=lambda cause: -cause.cases)
 
     def header(self) -> Dict[str, Any]:
         """What the first journal says about the study."""
