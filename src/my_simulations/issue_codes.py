@@ -72,6 +72,10 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
          "not exist.", "Write a type such as std_msgs/String; `rosmsg list` prints all."),
         ("grade-type-unknown", WARNING, "An assignment file names a type of messages or services "
          "that cannot be looked up without ROS.", "Source the workspace that defines the type."),
+        ("grade-world", ERROR, "The world of an assignment file cannot be read.",
+         "Check it with check_model."),
+        ("grade-model-unknown", WARNING, "A check of an assignment file names a model that its "
+         "world does not have.", "Correct the name."),
         ("grade-expression", ERROR, "A condition or a partial mark of an assignment file is not "
          "understood.", "Use the signals and functions of doc/studies.md."),
     )),

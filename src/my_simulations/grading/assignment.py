@@ -2,9 +2,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Optional, Tuple, Union
+from typing import Any, List, Optional, Tuple, Union
 
-from ..studies.expressions import Expression
+from ..studies.expressions import Expression, Signal
 from ..studies.study import PlacedModel
 
 STATIC, DYNAMIC, MODEL, LIGHT, LINK, JOINT, PLUGIN = (
@@ -253,3 +253,14 @@ class Assignment:
     def of(self, *kinds: type) -> "Tuple[Any, ...]":
         """The checks of these kinds, in order."""
         return tuple(check for check in self.checks if isinstance(check, kinds))
+
+
+def signals_of(check: Timed) -> List[Signal]:
+    """What a check reads from the world."""
+    if isinstance(check, Place):
+        return [Signal("pose", (check.model,), part) for part in "xyz"]
+    if isinstance(check, NoContact):
+        return [Signal("contact", (check.first, check.second))]
+    if isinstance(check, Requirement):
+        return [signal for one in check.expressions for signal in one.signals]
+    return []

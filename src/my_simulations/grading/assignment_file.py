@@ -3,9 +3,10 @@ from __future__ import annotations
 
 import os
 import re
-from typing import Any, Dict, List, Mapping, Optional, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
-from ..errors import Issue
+from ..errors import InputError, Issue
+from ..formats.reading import parse_world
 from ..studies.value_reader import describe_value, read_document
 from .assignment import (
     Assignment,
@@ -18,6 +19,7 @@ from .assignment import (
     ValidFile,
 )
 from .check_reader import AssignmentValues, CheckReader
+from .unknown_models import unknown_models
 
 _KEYS = ("lab", "submission", "world", "models", "services", "record", "sample", "limits",
          "checks")
@@ -56,13 +58,16 @@ class _AssignmentReader(AssignmentValues):
             self.fault(("world",), "the world is that of the submission or that of the assignment,"
                                    " not both", code="grade-key")
         checks = self._checks(top.get("checks"), bool(form.world or world), form)
+        models = self.models(top.get("models"), ("file", "pose", "namespace"))
         services = top.get("services", _READ if top.get("models") else _ALL)
         if services not in (_READ, _ALL):
             self.fault(("services",), f"'services' must be {_READ} or {_ALL}, is {services!r}")
+        if services == _READ and os.path.isfile(world):   # else a program can spawn models
+            self._check_names(checks, world, {model.name for model in models})
         stem = os.path.splitext(os.path.basename(file))[0]
         return Assignment(
             self.text(top.get("lab", stem), ("lab",)), file, form, world,
-            self.models(top.get("models"), ("file", "pose", "namespace")),
+            models,
             self.number(top.get("sample", 0.01), ("sample",), above=0.0, most=_LONGEST_S),
             self._limits(top.get("limits")), checks, services == _ALL,
             self._read_recorded(top.get("record"), form))
@@ -118,6 +123,24 @@ class _AssignmentReader(AssignmentValues):
             self.fault(("checks", str(names.index(name))), f"two checks have the name '{name}'",
                        "give each a name of its own", "grade-key")
         return tuple(check for check in found if check is not None)
+
+
+    def _check_names(self, checks: Sequence[Check], world: str, models: Set[str]) -> None:
+        """Warn of models that the checks name and the assignment's world does not have."""
+        try:
+            with open(world, "rb") as stream:
+                described, _ = parse_world(stream.read(), self._resolver, world)
+        except (InputError, OSError) as fault:
+            self.fault(("world",), f"the world cannot be read: {fault}", code="grade-world")
+            return
+        known = models | {model.name for model in described.models}
+        for index, check in enumerate(checks):
+            unknown = unknown_models(check, known) if isinstance(check, Timed) else []
+            if unknown:
+                self.advise(("checks", str(index)), f"'{check.name}' names {', '.join(unknown)},"
+                            f" which the world does not have; its models are"
+                            f" {', '.join(sorted(known)[:10])}",
+                            "unless a plugin spawns it, correct the name", "grade-model-unknown")
 
 
 def _needs_world(check: Check) -> bool:

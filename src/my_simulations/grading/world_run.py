@@ -21,6 +21,7 @@ from .assignment import (
     ServiceAnswer,
     Timed,
     TopicRate,
+    signals_of,
 )
 from .mark import CheckResult, late_reason, score_check
 
@@ -109,7 +110,7 @@ class WorldRun:
     def _sample(self, checks: Sequence[Timed]) -> None:
         """Add a sample to each check that can be read; a name may come to exist later."""
         for check in checks:
-            signals = _signals(check)
+            signals = signals_of(check)
             try:
                 if check.name not in self._readers and signals:
                     self._readers[check.name] = SignalReader(self._world, signals, {})
@@ -146,18 +147,8 @@ def world_choice_of(assignment: Assignment, path: str) -> WorldChoice:
                        alter_model=add_namespace)
 
 
-def _signals(check: Timed) -> List[Signal]:
-    if isinstance(check, Place):
-        return [Signal("pose", (check.model,), part) for part in "xyz"]
-    if isinstance(check, NoContact):
-        return [Signal("contact", (check.first, check.second))]
-    if isinstance(check, Requirement):
-        return [signal for one in check.expressions for signal in one.signals]
-    return []
-
-
 def _check_place(check: Place, samples: Samples, name: str) -> CheckResult:
-    now = [float(samples[signal][-1]) for signal in _signals(check)]
+    now = [float(samples[signal][-1]) for signal in signals_of(check)]
     distance = math.sqrt(sum((value - wanted) ** 2 for value, wanted in zip(now, check.at)
                              if wanted is not None))
     if distance <= check.tolerance:
@@ -191,7 +182,7 @@ def _check_requirement(check: Requirement, samples: Samples, name: str) -> Check
 
 
 def _apart(check: NoContact, samples: Samples, name: str) -> CheckResult:
-    touched = np.flatnonzero(samples[_signals(check)[0]])
+    touched = np.flatnonzero(samples[signals_of(check)[0]])
     if not len(touched):
         return score_check(check, 1.0)
     time = float(samples[Signal("time")][touched[0]])

@@ -70,6 +70,38 @@ checks:
         "<plugin><robotNamespace>/</robotNamespace></plugin>", "<plugin/>", "<plugin/>"]
 
 
+def test_models_that_the_world_of_the_assignment_lacks_are_warned_of(tmp_path):
+    (tmp_path / "robot.urdf").write_text("<robot/>")
+    (tmp_path / "lab.yaml").write_text("""submission: {run: go.py}
+world: worlds/empty.world
+models: {one: {file: robot.urdf}}
+checks:
+  - {points: 1, name: right, require: "final(pose.'one::base'.x) > 0", within: 1}
+  - {points: 1, name: typo, require: final(pose.won.x) > 1, partial: final(speed.one), within: 1}
+  - {points: 1, name: apart, no_contact: [one, ground_plain], within: 1}
+""")
+    _, issues = read_assignment(str(tmp_path / "lab.yaml"))
+    assert [(issue.line, issue.code) for issue in issues] == [
+        (6, "grade-model-unknown"), (7, "grade-model-unknown")]
+    assert issues[0].message == ("'typo' names won, which the world does not have; its models are"
+                                 " ground_plane, one")
+    assert "ground_plain," in issues[1].message
+    spawning = (tmp_path / "lab.yaml").read_text() + "services: all\n"
+    (tmp_path / "lab.yaml").write_text(spawning)
+    assert read_assignment(str(tmp_path / "lab.yaml"))[1] == []
+
+
+def test_a_world_of_the_assignment_that_cannot_be_read_is_a_fault(tmp_path):
+    (tmp_path / "bad.world").write_text("<sdf version='1.6'><model name='m'/></sdf>")
+    found = faults(tmp_path, """submission: {run: go.py}
+world: bad.world
+services: read
+checks: [{points: 1, place: one, at: [0, 0], within: 1}]
+""")
+    assert [(line, code) for line, code, _ in found] == [(2, "grade-world")]
+    assert "no <world>" in found[0][2]
+
+
 def test_all_kinds_of_checks_are_read(tmp_path):
     found = read(tmp_path, WHOLE)
     assert (found.lab, found.points, found.limits.seconds, found.limits.processes) == (
