@@ -6,23 +6,25 @@ import fcntl
 import os
 import queue
 import shutil
+import tempfile
 import threading
+import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import Callable, Dict, Iterator, List, Optional, Sequence, Tuple
 
 from .. import __version__
 from ..errors import CommandError
-from ..resources.database.archive import ArchiveError
+from ..resources.database.archive import ArchiveError, extract
+from ..resources.database.http_download import Limits
 from ..simulator.safe_file import write_atomically
 from ..studies.provenance import digest_of_file
 from .assignment import Assignment
 from .box_process import GradingStoppedError, contains, grade_in_box
 from .mark import FAILED, GRADED, Mark, all_failed, mark_of
 from .program import workspace_paths
-from .submission import Submission, content_key, size_of
-from .submission_files import SubmissionError
-from .unpacking import unpack_submission
+from .submission import ARCHIVES, Submission, content_key, size_of
+from .submission_files import MOST_FILES, SubmissionError, content_of
 
 STUDENTS = "students"
 """Folder of the students' folders."""
@@ -224,3 +226,50 @@ def _lock(path: str, locks: contextlib.ExitStack) -> bool:
         return False
     locks.callback(os.close, descriptor)
     return True
+
+
+_SECONDS = 120.0
+_MOST_ARCHIVES = 2   # in each other
+
+
+@contextlib.contextmanager
+def unpack_submission(submission: Submission, folder: str, most_bytes: int) -> Iterator[Submission]:
+    """Unpack a submission if it is an archive; provide its content for a `with` block.
+
+    An archive is a submission if it is handed in itself, or as the only file of a folder. If it
+    contains one archive only, as learning platforms pack uploads, that one is unpacked, too.
+
+    Args:
+        submission: the submission as it was handed in.
+        folder: existing folder; contains the unpacked files until the `with` block ends. No other
+            submission may see it.
+        most_bytes: limit of all unpacked files.
+
+    Raises:
+        ArchiveError: the archive is damaged, too large, encrypted, or writes outside of its folder.
+    """
+    with contextlib.ExitStack() as ending:
+        until = time.monotonic() + _SECONDS
+        for _ in range(_MOST_ARCHIVES):
+            archive = archive_of(submission)
+            if not archive:
+                break
+            above = ending.enter_context(tempfile.TemporaryDirectory(prefix=".unpacked_",
+                                                                     dir=folder))
+            path = os.path.join(above, "files")
+            extract(_kind_of(archive), archive, path,
+                    Limits(files=MOST_FILES, unpacked_bytes=most_bytes), until, skips_links=True)
+            submission = Submission(submission.student, path)
+        yield submission
+
+
+def _kind_of(archive: str) -> str:
+    return next(kind for ending, kind in ARCHIVES.items() if archive.lower().endswith(ending))
+
+
+def archive_of(submission: Submission) -> str:
+    """Path of the archive that a submission consists of; "" for none."""
+    files = [full for relative, full in content_of(submission.path).files
+             if not os.path.basename(relative).startswith(".")]
+    is_archive = len(files) == 1 and files[0].lower().endswith(tuple(ARCHIVES))
+    return files[0] if is_archive else ""

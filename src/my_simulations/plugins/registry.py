@@ -109,7 +109,7 @@ BUILT_IN: Mapping[str, str] = {
         "flight.quadrotor_simple_controller:QuadrotorSimpleController",
     "libhector_gazebo_quadrotor_propulsion.so": "flight.quadrotor_propulsion:QuadrotorPropulsion",
     "libhector_gazebo_quadrotor_aerodynamics.so":
-        "flight.quadrotor_aerodynamics:QuadrotorAerodynamics",
+        "flight.quadrotor_propulsion:QuadrotorAerodynamics",
     "libplugin_drone.so": "flight.sjtu_drone:SjtuDrone",
     "libArduPilotPlugin.so": "flight.ardupilot:ArduPilot",
     "librotors_gazebo_motor_model.so": "flight.motor_model:MotorModel",

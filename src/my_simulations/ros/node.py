@@ -18,8 +18,13 @@ from .lifecycle.launch_info import Launch
 from .lifecycle.master_membership import Membership
 from .own_server import EDITOR_REQUESTED
 from .plugins.plugin_starter import PluginStarter
-from .services.editor_service import Open
-from .services.world_services import WorldServices
+from .services.world_services import (
+    EditorService,
+    Open,
+    SaveService,
+    StepService,
+    WorldServices,
+)
 
 if TYPE_CHECKING:
     from .registration import Replace
@@ -175,10 +180,6 @@ class Node:
                              self._plugins.wait_until_loaded)
 
     def _late_handlers(self) -> Dict[str, Any]:
-        from .services.editor_service import EditorService
-        from .services.save_service import SaveService
-        from .services.step_service import StepService
-
         simulator = self._simulator
         return {
             "models": self._models(), "editor": EditorService(self._open_editor),

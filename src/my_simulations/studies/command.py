@@ -6,6 +6,7 @@ import contextlib
 import json
 import os
 import shlex
+import shutil
 import signal
 import sys
 from functools import partial
@@ -27,7 +28,6 @@ from .report import write_report
 from .row import OK
 from .row_recorder import Recorder
 from .scenario_slot import launch_words, require_ros
-from .show import can_launch, launch_command, write_world
 from .slot import Hook, final_hash
 from .study_file import read_study
 from .study_progress import Progress
@@ -334,3 +334,24 @@ def _print(text: str) -> None:
 
 def _print_error(text: str) -> None:
     sys.stderr.write(text + "\n")
+
+
+def write_world(plan: CasePlan, case: Case, path: str) -> str:
+    """Write the world of a case, as it stands before the first step; returns the file.
+
+    Raises:
+        InputError: the world cannot be used.
+        CommandError: it cannot be written.
+    """
+    with open_case(plan, case) as world:
+        return world.save_world(path, overwrite=True)
+
+
+def launch_command(world: str) -> List[str]:
+    """What opens a world in the editor, paused."""
+    return ["roslaunch", "gazebo_ros", "empty_world.launch", f"world_name:={world}", "paused:=true"]
+
+
+def can_launch() -> bool:
+    """Whether ROS is there, and this shell knows its packages."""
+    return shutil.which("roslaunch") is not None and bool(os.environ.get("ROS_PACKAGE_PATH"))

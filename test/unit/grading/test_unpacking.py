@@ -9,10 +9,10 @@ import zipfile
 
 import pytest
 
+from my_simulations.grading.grader import unpack_submission
 from my_simulations.grading.submission import submissions_of
 from my_simulations.grading.submission_files import MOST_FILES
 from my_simulations.grading.submission_files import content_of as files_of
-from my_simulations.grading.unpacking import unpack_submission
 from my_simulations.resources.database.archive import ArchiveError
 
 MOST_BYTES = 1 << 20

@@ -11,8 +11,8 @@ from my_simulations.geometry import Pose, Twist, quat_from_rpy
 from my_simulations.messages import Time
 from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.flight.filtered_pid import FilteredPid
-from my_simulations.plugins.flight.quadrotor_aerodynamics import QuadrotorAerodynamics
 from my_simulations.plugins.flight.quadrotor_propulsion import (
+    QuadrotorAerodynamics,
     QuadrotorPropulsion,
     rotor_speeds_along,
 )

@@ -10,17 +10,17 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from dataclasses import replace
 from typing import Any, Deque, List, NamedTuple, Optional, Sequence, Tuple
 
-from ...engine.wrench_laws import Wrench, clamped_vector
+from ...engine.wrench_laws import BodyDrag, Wrench, clamped_vector
 from ...geometry import Vec3
 from ..base import Plugin
-from ..context import CallHandle
+from ..context import CallHandle, Context, PluginError
 from ..finite_messages import finite_only
 from ..frames import stamp_message
 from ..parameters import namespace_or
 from .body_wrench import body_twist, fill_wrench, push_at_origin
-from .quadrotor_aerodynamics import MOST_VELOCITY, model_parameters
 
 _PWM_STEPS = 255
 _COMMAND_END_NS = 10 ** 9
@@ -220,3 +220,67 @@ class QuadrotorPropulsion(Plugin):
         message.voltage = [self._voltage]
         message.current = []
         self._supply.publish(message)
+
+
+MOST_VELOCITY = 100.0   # m/s and rad/s: faster motion counts as this (hector_quadrotor_model)
+
+
+class QuadrotorAerodynamics(Plugin):
+    """Acts on the first link of the model."""
+
+    def load(self) -> None:
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        self._link = context.link("")
+        across, along, turn_across, turn_along = model_parameters(
+            context, p.text("paramNamespace", "quadrotor_aerodynamics"),
+            ["C_wxy", "C_wz", "C_mxy", "C_mz"])
+        self._drag = BodyDrag((across, across, along), (turn_across, turn_across, turn_along),
+                              context.wind, MOST_VELOCITY)
+        context.set_wrench_law(self._link.name, self._drag)
+        self._wind: Optional[Vec3] = None
+        topic = p.text("windTopicName", "/wind")
+        if topic:
+            context.subscribe(topic, "geometry_msgs/Vector3",
+                              finite_only(context, topic, self._receive))
+        self._frame = p.text("frameId", self._link.name)
+        self._wrenches = context.publish(p.text("wrenchTopic", "aerodynamics/wrench"),
+                                         "geometry_msgs/WrenchStamped", 10)
+        context.observe(0.0, self._publish, [self._wrenches])
+        context.on_world_change(self.update)
+
+    def reset(self) -> None:
+        """Drag ended with the reset. The wind is that of the world."""
+        self._wind = None
+        self._drag = replace(self._drag, wind=self.context.wind)
+        self.context.set_wrench_law(self._link.name, self._drag)
+
+    def _receive(self, message: Any) -> None:
+        self._wind = (message.x, message.y, message.z)
+        self.update()
+
+    def update(self) -> None:
+        wind = self.context.wind if self._wind is None else self._wind
+        if wind != self._drag.wind:
+            self._drag = replace(self._drag, wind=wind)
+            self.context.set_wrench_law(self._link.name, self._drag)
+
+    def _publish(self) -> None:
+        message = stamp_message(self.context, "geometry_msgs/WrenchStamped", self._frame)
+        fill_wrench(message.wrench, self._drag.in_body_axes(self._link.pose, self._link.twist))
+        self._wrenches.publish(message)
+
+
+def model_parameters(context: Context, namespace: str, names: List[str]) -> List[float]:
+    """Numbers of the parameter server below a namespace.
+
+    Raises PluginError if one is missing or not a number.
+    """
+    found = []
+    for name in names:
+        value = context.parameter(f"{namespace}/{name}", None)
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise PluginError(f"parameter {namespace}/{name} must be a number, it is {value!r}: is"
+                              " the parameter file of the model loaded?")
+        found.append(float(value))
+    return found

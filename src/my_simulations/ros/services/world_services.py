@@ -1,9 +1,14 @@
-"""Services for the whole world: models, physics properties, pause and reset."""
+"""Services for the whole world: properties, pause, reset, steps, saving, and its editor."""
 from __future__ import annotations
 
-from typing import Any
+import threading
+from typing import Any, Callable, List, Optional
+
+import rospy
 
 from ...description.scoped_names import SCOPE
+from ...errors import CommandError
+from ...resources.resolver import Resolver
 from ...simulator.simulator import Simulator
 from .entity_errors import gazebo_prefix
 from .physics_parameters import ODE, change_parameters, current_parameters
@@ -81,3 +86,99 @@ class WorldServices:
         """Reset sim time to 0; everything else is kept."""
         self._simulator.resets.reset_time()
         return ""
+
+
+Open = Callable[[], str]
+"""Starts the editor of this server unless it runs, and returns its address."""
+
+
+class EditorService:
+    """Starts the world editor on request and returns its URL."""
+
+    def __init__(self, open_editor: Optional[Open]) -> None:
+        self._open = open_editor
+
+    def open(self, _request: Any, response: Any) -> str:
+        """Start the editor if needed. Raises CommandError: it is not installed or cannot listen."""
+        if self._open is None:
+            raise CommandError("this node was started without a world editor")
+        response.url = self._open()
+        return f"the world editor is at {response.url}; gzclient opens it"
+
+
+_STEPS_PER_COMMAND = 1000
+"""Steps per engine command; between two of them a shutdown of the node is noticed."""
+
+_MOST_STEPS = 100000000
+
+
+class StepService:
+    """Executes steps, one request at a time."""
+
+    def __init__(self, simulator: Simulator) -> None:
+        self._simulator = simulator
+        self._lock = threading.Lock()
+
+    def step(self, request: Any, response: Any) -> str:
+        """Execute steps as fast as possible; returns when they are done.
+
+        Raises CommandError: the count is out of range, or the node shuts down.
+        """
+        steps = request.steps
+        if not 0 <= steps <= _MOST_STEPS:
+            raise CommandError(f"steps must be between 0 and {_MOST_STEPS}, is {steps}")
+        with self._lock:
+            left = steps
+            while left > 0:
+                if rospy.is_shutdown():
+                    raise CommandError(f"node is shutting down; {left} steps not executed")
+                count = min(left, _STEPS_PER_COMMAND)
+                self._simulator.clock.advance(count)
+                left -= count
+            nanoseconds = self._simulator.clock.sim_ns
+        response.sim_time.secs, response.sim_time.nsecs = divmod(nanoseconds, 1000000000)
+        return f"{steps} steps executed"
+
+
+ROOTS = "~save_roots"
+"""Parameter: folders below which worlds may be saved; replaces the default list."""
+
+
+class SaveService:
+    """Saves the running world to a file."""
+
+    def __init__(self, simulator: Simulator, resolver: Resolver, caller: str = "") -> None:
+        """`caller`: working directory of the user who started the node; an allowed folder."""
+        self._caller = caller
+        self._simulator = simulator
+        self._resolver = resolver
+
+    def save(self, request: Any, response: Any) -> str:
+        """Save the world in its current state.
+
+        Raises CommandError: the path is not allowed or cannot be written.
+        """
+        # Imported with the first request: start-up time counts.
+        from ...simulator.saving import default_roots, save_world
+
+        roots = _roots()
+        if roots is None:
+            roots = default_roots(self._simulator.world.file, self._caller)
+        left_out = [] if request.launched else self._simulator.models.launched()
+        response.path = save_world(
+            self._simulator, request.path, roots=roots, resolver=self._resolver,
+            overwrite=request.overwrite, inline=request.inline, state=request.state,
+            launched=request.launched)
+        without = (f", without models spawned by the launch file: {', '.join(left_out)}"
+                   if left_out else "")
+        return f"saved to {response.path}{without}"
+
+
+def _roots() -> Optional[List[str]]:
+    roots = rospy.get_param(ROOTS, None)
+    if roots is None:
+        return None
+    if not isinstance(roots, list) or not all(isinstance(root, str) and root for root in roots):
+        raise CommandError(f"parameter {rospy.resolve_name(ROOTS)} must be a list of folders,"
+                           f" is {roots!r}")
+    return roots
