@@ -25,41 +25,13 @@ import acting_plugins
 import scenes
 import stock_robots
 from row_table import Row, Rows
-from server import Server, children, master, processor, wait
+from server import Server, master, processor, wait
 
 WORLD = scenes.world("boxes", 0, True, 1000.0)
 ROBOT = pathlib.Path(__file__).resolve().parents[2] / "urdf" / "robo.urdf.xacro"
 SECONDS = 15.0
 TURNS, TURN, TURN_SETTLE = 9, 2.0, 0.5   # of the drive alone: measurements, s of each, s before it
 HERTZ, MOST_LAG = 100.0, 6   # of the controllers' odometry; periods
-
-
-class Shares:
-    """Processor shares of the node and of its children, and the real-time factor, over a time."""
-
-    def __init__(self, server: Server) -> None:
-        import rospy
-
-        self._node = server.process.pid
-        self._engine = rospy.get_param("/gazebo/my_simulations/engine_pid")
-        self._others = [pid for pid in children(self._node) if pid != self._engine]
-        self._before = self._read()
-        self._begun, self._sim = time.perf_counter(), rospy.get_rostime().to_sec()
-
-    def _read(self) -> List[float]:
-        return [processor([self._node]), processor([self._engine]), processor(self._others)]
-
-    def end(self) -> Tuple[float, float, float, float]:
-        """Of the node, the engine and the sensing process, by sim time; sim time by wall time.
-
-        Processor time by sim time is what a share would be at a real-time factor of 1.
-        """
-        import rospy
-
-        wall = time.perf_counter() - self._begun
-        sim = max(1e-3, rospy.get_rostime().to_sec() - self._sim)
-        node, engine, others = ((b - a) / sim for a, b in zip(self._before, self._read()))
-        return node, engine, others, sim / wall
 
 
 def spawn(count: int, laser: bool = True,
@@ -145,10 +117,9 @@ def ten() -> List[Row]:
         spawn(10)
         heard = listen(10)
         wait(lambda: len(heard) == 3, 60, "scans")
-        shares = Shares(server)
-        time.sleep(SECONDS)
-        node, engine, sensing, factor = shares.end()
-    return [("ten robots: real-time factor", f"{factor:.2f}", "1", True),
+        used = stock_robots.measure(server, SECONDS)
+    node, engine, sensing = (used.parts[name] for name in ("node", "engine", "sensing"))
+    return [("ten robots: real-time factor", f"{used.factor:.2f}", "1", True),
             ("ten robots: node, that publishes", f"{100 * node:.0f} % of a core", "", True),
             ("ten robots: sensing process", f"{100 * sensing:.1f} % of a core", "", True),
             ("ten robots: publishing and sensing", f"{100 * (node + sensing):.0f} % of a core",
@@ -200,20 +171,19 @@ def closed_loop() -> List[Row]:
         controllers = [Controller(n) for n in range(10)]
         wait(lambda: all(len(one.told) > 100 for one in controllers), 60, "odometry")
         before = sum(len(one.told) for one in controllers)
-        shares = Shares(server)
-        time.sleep(SECONDS)
-        node, engine, _, factor = shares.end()
+        used = stock_robots.measure(server, SECONDS)
         count = sum(len(one.told) for one in controllers) - before
         lags = collections.Counter(lag for one in controllers for lag in one.lags())
     total = max(1, sum(lags.values()))
     counts = ", ".join(f"{lag}: {100 * lags[lag] / total:.1f} %" for lag in sorted(lags))
-    return [("ten controllers in one program: real-time factor", f"{factor:.2f}", "1",
-             factor > 0.98),
+    return [("ten controllers in one program: real-time factor", f"{used.factor:.2f}", "1",
+             used.factor > 0.98),
             ("ten controllers: commands a second of wall time", f"{count / SECONDS:.0f}", "1000",
              True),
             ("ten controllers: periods until a command acts", counts, "1", True),
             ("ten controllers: node, engine",
-             f"{100 * node:.0f} %, {100 * engine:.0f} % of a core", "", True)]
+             f"{100 * used.parts['node']:.0f} %, {100 * used.parts['engine']:.0f} % of a core",
+             "", True)]
 
 
 ROWS: Rows = {

@@ -232,16 +232,16 @@ class Base:
         before = self.gazebo.get_physics_properties()
         changed = self.gazebo.get_physics_properties()
         changed.gravity.x, changed.gravity.z = 0.5, -1.6
-        changed.ode_config.sor_pgs_w = 1.25
-        changed.ode_config.auto_disable_bodies = True
+        config = changed.ode_config
+        config.sor_pgs_w, config.max_contacts, config.sor_pgs_rms_error_tol = 1.25, 7, 0.25
+        config.auto_disable_bodies = True
         try:
-            answer = self.gazebo.set_physics_properties(0.002, 500.0, changed.gravity,
-                                                        changed.ode_config)
+            answer = self.gazebo.set_physics_properties(0.002, 500.0, changed.gravity, config)
             self.assertTrue(answer.success, answer.status_message)
             after = self.gazebo.get_physics_properties()
             self.assertEqual((after.time_step, after.max_update_rate), (0.002, 500.0))
             self.assertEqual(after.gravity, changed.gravity)
-            self.assertEqual(after.ode_config, changed.ode_config)
+            self.assertEqual(after.ode_config, config)
             self.assertEqual(after.pause, self.paused)
         finally:
             self.gazebo.set_physics_properties(before.time_step, before.max_update_rate,

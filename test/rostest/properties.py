@@ -141,27 +141,7 @@ class Properties(support.GazeboCase):
         self.assertTrue(math.isnan(found.position[0]))
         self.assertEqual(list(found.rate), [0.0])
 
-    # -- physics and dynamic_reconfigure
-
-    def test_physics_are_read_back_as_they_were_set(self):
-        before = self.done(self.gazebo.get_physics_properties())
-        config = before.ode_config
-        config.sor_pgs_w, config.max_contacts, config.sor_pgs_rms_error_tol = 1.5, 7, 0.25
-        config.auto_disable_bodies = True
-        self.done(self.gazebo.set_physics_properties(0.002, 250.0, Vector3(0.5, 0.25, -3.0),
-                                                     config))
-        found = self.done(self.gazebo.get_physics_properties())
-        self.assertEqual((found.time_step, found.max_update_rate, found.ode_config),
-                         (0.002, 250.0, config))
-        self.assertEqual((found.gravity.x, found.gravity.y, found.gravity.z), (0.5, 0.25, -3.0))
-        self.restore()
-
-    def restore(self):
-        config = self.gazebo.get_physics_properties().ode_config
-        config.sor_pgs_w, config.max_contacts, config.sor_pgs_rms_error_tol = 1.3, 20, 0.0
-        config.auto_disable_bodies = False
-        self.done(self.gazebo.set_physics_properties(0.001, 1000.0, Vector3(0.0, 0.0, -9.8),
-                                                     config))
+    # -- dynamic_reconfigure
 
     def test_dynamic_reconfigure_changes_and_hears_of_changes(self):
         heard = []

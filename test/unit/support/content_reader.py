@@ -1,5 +1,7 @@
-"""A strict little reader of the shipped SDF and URDF files, so that tests of the content do not
-rest on the package's own readers."""
+"""A strict little reader of the shipped SDF and URDF files.
+
+Tests of the content do not rest on the package's own readers, but for meshes.
+"""
 from __future__ import annotations
 
 import subprocess
@@ -12,6 +14,7 @@ from typing import List, Optional
 import content_solids as solids
 import numpy as np
 
+from my_simulations.description.shapes import Mesh
 from my_simulations.geometry import IDENTITY, Pose, compose, pose_from_xyzrpy, transform
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -141,29 +144,14 @@ def urdf_solid(shape: ElementTree.Element, pose: Pose) -> solids.Solid:
         return solids.sphere(float(shape.get("radius")), pose)
     if shape.tag == "cylinder":
         return solids.cylinder(float(shape.get("radius")), float(shape.get("length")), pose)
-    vertices, triangles = collada_mesh(mesh_path(shape.get("filename")))
-    return solids.mesh(vertices * np.array(numbers(shape.get("scale", "1 1 1"))), triangles, pose)
+    path = mesh_path(shape.get("filename"))
+    return solids.mesh(Mesh(path.name, str(path), tuple(numbers(shape.get("scale", "1 1 1")))),
+                       pose)
 
 
 def mesh_path(uri: str) -> Path:
     assert uri.startswith("package://my_simulations/"), uri
     return ROOT / uri[len("package://my_simulations/"):]
-
-
-def collada_mesh(path: Path):
-    """Vertices in metres and triangles of a mesh that make_meshes.py wrote."""
-    root = ElementTree.parse(path).getroot()
-    unit = float(root.find(f"{COLLADA}asset/{COLLADA}unit").get("meter"))
-    floats = numbers(root.find(f".//{COLLADA}float_array").text)
-    polylist = root.find(f".//{COLLADA}polylist")
-    stride = len(polylist.findall(f"{COLLADA}input"))
-    corners = [int(w) for w in polylist.findtext(f"{COLLADA}p").split()][::stride]
-    triangles, at = [], 0
-    for count in map(int, polylist.findtext(f"{COLLADA}vcount").split()):
-        face = corners[at:at + count]
-        triangles += [(face[0], face[i], face[i + 1]) for i in range(1, count - 1)]
-        at += count
-    return np.array(floats).reshape(-1, 3) * unit, np.array(triangles)
 
 
 def symmetric(get) -> np.ndarray:

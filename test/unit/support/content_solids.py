@@ -5,7 +5,10 @@ from dataclasses import dataclass
 from typing import List, Sequence, Tuple
 
 import numpy as np
+import trimesh
 
+from my_simulations.description.shapes import Mesh
+from my_simulations.formats.mesh.loading import load_mesh
 from my_simulations.geometry import Pose, rotate
 
 Matrix = np.ndarray
@@ -45,21 +48,14 @@ def cylinder(radius: float, length: float, pose: Pose) -> Solid:
                   (radius, radius, length / 2))
 
 
-def mesh(vertices: Matrix, triangles: Matrix, pose: Pose) -> Solid:
-    """A closed mesh, by summing tetrahedra from the origin."""
-    a, b, c = (vertices[triangles[:, i]] for i in range(3))
-    volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6
-    volume = float(volumes.sum())
-    centre = (volumes[:, None] * (a + b + c)).sum(0) / 4 / volume
-    second = np.zeros((3, 3))
-    total = a + b + c
-    for p in (a, b, c, total):
-        second += np.einsum("n,ni,nj->ij", volumes, p, p) / 20
-    about_origin = np.eye(3) * np.trace(second) - second
-    inertia = about_origin - volume * _steiner(centre)
+def mesh(file: Mesh, pose: Pose) -> Solid:
+    """A closed mesh."""
+    data = load_mesh(file)
+    made = trimesh.Trimesh(data.vertices, data.triangles, process=False)
     turn = _matrix(pose)
-    return Solid("mesh", (), pose, volume, turn @ centre + np.array(pose.position),
-                 turn @ inertia @ turn.T, vertices @ turn.T + np.array(pose.position))
+    place = np.array(pose.position)
+    return Solid("mesh", (), pose, made.volume, turn @ made.center_mass + place,
+                 turn @ made.moment_inertia @ turn.T, data.vertices @ turn.T + place)
 
 
 def compound(solids: Sequence[Solid], mass: float) -> Tuple[Matrix, Matrix]:
