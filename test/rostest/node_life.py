@@ -265,9 +265,13 @@ class NodeLife(unittest.TestCase):
             for word in words:
                 self.assertIn(word, program.text)
 
-    def test_a_missing_world_file_is_refused(self):
-        missing = os.path.join(self.folder, "none.world")
-        self.assert_refused(missing, argument=missing)
+    def test_the_empty_world_replaces_a_missing_file_and_a_folder_as_in_gazebo(self):
+        for missing in (os.path.join(self.folder, "none.world"), self.folder):
+            with Program([self.server, missing, "__name:=second"]) as server:
+                self.assertEqual(support.Gazebo("/second").names(), ["ground_plane"])
+                self.assertEqual(rospy.get_param("/second/world_base_name"), "empty")
+                wait_for(lambda: missing in server.text, "the path that is missing")
+            rospy.delete_param("/second")
 
     def test_a_world_file_that_is_cut_off_is_refused_with_its_line(self):
         path = self.world('<sdf version="1.5">\n<world name="w">\n<model name="m">\n<link')
@@ -276,9 +280,6 @@ class NodeLife(unittest.TestCase):
     def test_a_file_without_a_world_is_refused(self):
         path = self.world('<sdf version="1.5"></sdf>')
         self.assert_refused("no <world>", path, argument=path)
-
-    def test_a_folder_is_no_world_file(self):
-        self.assert_refused(self.folder, argument=self.folder)
 
     def test_an_unknown_model_is_told_and_the_rest_of_the_world_loads(self):
         path = self.world(WORLD.format(
@@ -298,10 +299,10 @@ class NodeLife(unittest.TestCase):
             self.assertEqual(program.ended(), 0, program.text)
 
     def test_a_bad_world_is_told_without_a_master_too(self):
-        missing = os.path.join(self.folder, "none.world")
-        with Program([self.server, missing], ROS_MASTER_URI=silent_uri()) as program:
+        path = self.world('<sdf version="1.5"></sdf>')
+        with Program([self.server, path], ROS_MASTER_URI=silent_uri()) as program:
             self.assertEqual(program.ended(), 1)
-            self.assertIn(missing, program.text)
+            self.assertIn(path, program.text)
 
     def test_a_new_master_is_told_everything_again(self):
         uri = silent_uri()

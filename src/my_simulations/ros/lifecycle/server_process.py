@@ -11,6 +11,7 @@ import signal
 import sys
 import threading
 import time
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence
 
 from ...errors import CommandError, InputError, error
@@ -38,6 +39,9 @@ EARLY_SECONDS = 1.0
 
 POLL_SECONDS = 0.05
 """Wall seconds after which a signal interrupts the wait for the world."""
+
+FALLBACK = "worlds/empty.world"
+"""The world that replaces one whose file does not exist, as in Gazebo 11."""
 
 CLOCK_QUEUE = 1000
 """Queue length of `/clock`: one second at 1000 Hz."""
@@ -94,10 +98,21 @@ class WorldLoader:
 
         self._profile.mark("readers imported")
         self.resolver = Resolver.from_environment(DownloadNotes(log))
-        self.simulator = start_world(
-            options.world, self.resolver, engines, log, seed=options.seed or 0,
-            profile=options.profile, steps=options.iterations or FOREVER, caller=caller,
-            read=lambda: self._profile.mark("world read"), progress=self._progress)
+
+        def start(world: str) -> Any:
+            return start_world(
+                world, self.resolver, engines, log, seed=options.seed or 0,
+                profile=options.profile, steps=options.iterations or FOREVER, caller=caller,
+                read=lambda: self._profile.mark("world read"), progress=self._progress)
+
+        try:
+            self.simulator = start(options.world)
+        except InputError as fault:
+            if not all(issue.code == "world-not-found" for issue in fault.issues):
+                raise
+            for issue in fault.issues:
+                log(replace(issue, message=f"{issue.message}; {FALLBACK} is loaded instead"))
+            self.simulator = start(FALLBACK)
         self._profile.mark("world loaded into the engine")
 
     @property
