@@ -23,8 +23,8 @@ from my_simulations.plugins.sensors.hector_errors import SensorErrors
 from my_simulations.plugins.sensors.hector_imu import HectorImu
 from my_simulations.plugins.sensors.segmentation import SegmentationCamera
 from my_simulations.plugins.testing import FakeContext
+from my_simulations.sensing import gps
 from my_simulations.sensing.api import Pictures, RayReturns
-from my_simulations.sensing.models import gps
 
 
 def of(cls, inside="", pose=None, twist=None, seconds=0.25, **options):

@@ -15,25 +15,31 @@ from my_simulations.geometry import (
     quat_from_rpy,
     rpy_from_quat,
 )
-from my_simulations.sensing.models import altimeter, gps, imu, magnetometer
-from my_simulations.sensing.models.motion import acceleration_between, velocity_at
+from my_simulations.sensing import gps
+from my_simulations.sensing.sensor_models import (
+    acceleration_between,
+    measure_altitude,
+    measure_magnetic_field,
+    measure_motion,
+    velocity_at,
+)
 
 GRAVITY = (0.0, 0.0, -9.8)
 NONE = (0.0, 0.0, 0.0)
 
 
 def test_an_imu_at_rest_reads_g_upwards_whichever_way_it_is_mounted():
-    found = imu.measure(IDENTITY, STILL, NONE, GRAVITY, IDENTITY)
+    found = measure_motion(IDENTITY, STILL, NONE, GRAVITY, IDENTITY)
     assert found.linear_acceleration == pytest.approx((0, 0, 9.8))
-    tipped = imu.measure(IDENTITY, STILL, NONE, GRAVITY,
-                         Pose((0.1, 0, 0), quat_from_rpy(math.pi / 2, 0, 0)))
+    tipped = measure_motion(IDENTITY, STILL, NONE, GRAVITY,
+                            Pose((0.1, 0, 0), quat_from_rpy(math.pi / 2, 0, 0)))
     assert tipped.linear_acceleration == pytest.approx((0, 9.8, 0))
     assert tipped.angular_velocity == pytest.approx(NONE)
 
 
 def test_an_imu_in_free_fall_reads_nothing():
-    assert imu.measure(IDENTITY, STILL, GRAVITY, GRAVITY, IDENTITY
-                       ).linear_acceleration == pytest.approx(NONE)
+    assert measure_motion(IDENTITY, STILL, GRAVITY, GRAVITY, IDENTITY
+                          ).linear_acceleration == pytest.approx(NONE)
 
 
 def test_a_spinning_imu_reads_its_rate_and_the_centripetal_acceleration():
@@ -43,7 +49,7 @@ def test_a_spinning_imu_reads_its_rate_and_the_centripetal_acceleration():
     poses = [Pose(orientation=quat_from_rpy(0, 0, rate * t)) for t in (-elapsed / 2, elapsed / 2)]
     before, now = (velocity_at(pose, twist, mount) for pose in poses)
     assert math.hypot(*now) == pytest.approx(rate * lever)
-    found = imu.measure(IDENTITY, twist, acceleration_between(before, now, elapsed), NONE, mount)
+    found = measure_motion(IDENTITY, twist, acceleration_between(before, now, elapsed), NONE, mount)
     assert found.angular_velocity == pytest.approx((0, 0, rate))
     # Towards the axis: -x of the link, which is +y of a sensor turned by 90 degrees.
     assert found.linear_acceleration == pytest.approx((0, rate * rate * lever, 0), abs=1e-5)
@@ -52,10 +58,10 @@ def test_a_spinning_imu_reads_its_rate_and_the_centripetal_acceleration():
 def test_an_imus_orientation_refers_to_the_world_or_to_the_first_one():
     link, mount = Pose(orientation=quat_from_rpy(0, 0, 0.5)), Pose(
         orientation=quat_from_rpy(0, 0, 0.2))
-    assert rpy_from_quat(imu.measure(link, STILL, NONE, GRAVITY, mount).orientation
+    assert rpy_from_quat(measure_motion(link, STILL, NONE, GRAVITY, mount).orientation
                          ) == pytest.approx((0, 0, 0.7))
     first = compose(IDENTITY, mount).orientation
-    assert rpy_from_quat(imu.measure(link, STILL, NONE, GRAVITY, mount, first).orientation
+    assert rpy_from_quat(measure_motion(link, STILL, NONE, GRAVITY, mount, first).orientation
                          ) == pytest.approx((0, 0, 0.5))
 
 
@@ -65,16 +71,16 @@ def test_no_time_is_no_acceleration():
 
 def test_a_magnetometer_reads_the_worlds_field_in_its_own_axes():
     field = (5.5645e-6, 22.8758e-6, -42.3884e-6)
-    assert magnetometer.measure(IDENTITY, IDENTITY, field) == pytest.approx(field)
+    assert measure_magnetic_field(IDENTITY, IDENTITY, field) == pytest.approx(field)
     turned = Pose(orientation=quat_from_rpy(0, 0, math.pi / 2))
-    assert magnetometer.measure(turned, IDENTITY, field) == pytest.approx(
+    assert measure_magnetic_field(turned, IDENTITY, field) == pytest.approx(
         (field[1], -field[0], field[2]))
 
 
 def test_an_altimeter_reads_height_and_climb_of_its_own_place():
     link = Pose((0, 0, 5.0))
     twist = Twist((0, 0, 1.0), (0, 1.0, 0))
-    found = altimeter.measure(link, twist, Pose((2.0, 0, 0.5)), 1.0)
+    found = measure_altitude(link, twist, Pose((2.0, 0, 0.5)), 1.0)
     assert found == pytest.approx((4.5, 1.0 - 2.0))
 
 

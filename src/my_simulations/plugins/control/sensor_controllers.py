@@ -11,9 +11,12 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional
 
 from ...description.model import Joint
 from ...description.sensor import ForceTorque, Sensor
-from ...sensing.models import force_torque
-from ...sensing.models.imu import measure
-from ...sensing.models.motion import acceleration_between, velocity_at
+from ...sensing.sensor_models import (
+    acceleration_between,
+    measure_motion,
+    measure_wrench,
+    velocity_at,
+)
 from ..context import Link, PluginError, Publication
 from ..frames import stamp_message
 from .controller import Controller
@@ -88,7 +91,7 @@ class ImuSensorController(_SensorController):
             self._before[sensor.name] = (now_ns, now)
             if not topic.wanted or then_ns == now_ns:
                 continue
-            sample = measure(link.pose, link.twist, acceleration_between(
+            sample = measure_motion(link.pose, link.twist, acceleration_between(
                 then, now, (now_ns - then_ns) * 1e-9), self.context.gravity, sensor.pose)
             message = stamp_message(self.context, "sensor_msgs/Imu", frame)
             turn = message.orientation
@@ -137,7 +140,7 @@ class ForceTorqueSensorController(_SensorController):
             wrench = self.context.joint_wrench(joint.name) if topic.wanted else None
             if wrench is None:
                 return
-            sample = force_torque.measure(wrench, frame, direction, joint.pose, sensor.pose)
+            sample = measure_wrench(wrench, frame, direction, joint.pose, sensor.pose)
             message = stamp_message(self.context, "geometry_msgs/WrenchStamped", named)
             force, torque = message.wrench.force, message.wrench.torque
             force.x, force.y, force.z = sample.force

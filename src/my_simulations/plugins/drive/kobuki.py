@@ -10,8 +10,7 @@ import math
 from typing import Any, Dict, List, Tuple
 
 from ...geometry import compose, rpy_from_quat, scale
-from ...sensing.models.imu import measure
-from ...sensing.models.motion import acceleration_between, velocity_at
+from ...sensing.sensor_models import acceleration_between, measure_motion, velocity_at
 from ..base import Plugin
 from ..context import PluginError, Publication
 from ..frames import add_tf_prefix, stamp_message
@@ -128,8 +127,9 @@ class Kobuki(Plugin):
         if not self._imu_topic.wanted:
             return
         context, link = self.context, self.context.link(self._imu_link)
-        sample = measure(link.pose, link.twist, acceleration_between(before, self._before, dt),
-                         context.gravity, self._imu.pose, self._reference)
+        acceleration = acceleration_between(before, self._before, dt)
+        sample = measure_motion(link.pose, link.twist, acceleration, context.gravity,
+                                self._imu.pose, self._reference)
         message = stamp_message(context, "sensor_msgs/Imu", add_tf_prefix(context, "base_link"))
         turn, rate, push = (message.orientation, message.angular_velocity,
                             message.linear_acceleration)

@@ -18,8 +18,7 @@ from typing import Callable, List, NamedTuple, Optional
 
 from ...engine.drive_commands import JointServo, PidGains
 from ...geometry import IDENTITY, Pose, Vec3, compose, conjugate, inverse, quat_from_rpy, rotate
-from ...sensing.models.imu import measure
-from ...sensing.models.motion import acceleration_between, velocity_at
+from ...sensing.sensor_models import acceleration_between, measure_motion, velocity_at
 from ..base import Plugin
 from ..context import CallHandle, Joint, PluginError
 from ..parameters import Parameters
@@ -218,9 +217,9 @@ class ArduPilot(Plugin):
     def _state(self) -> bytes:
         context, now = self.context, self._velocity()
         elapsed = (context.now_ns - self._last_ns) * 1e-9
-        sample = measure(self._imu.pose, self._imu.twist,
-                         acceleration_between(self._before, now, elapsed), context.gravity,
-                         self._mount, IDENTITY.orientation)
+        sample = measure_motion(self._imu.pose, self._imu.twist,
+                                acceleration_between(self._before, now, elapsed), context.gravity,
+                                self._mount, IDENTITY.orientation)
         self._before, self._last_ns = now, context.now_ns
         pose = compose(inverse(self._to_ned), compose(context.pose, self._to_airplane))
         x, y, z, w = pose.orientation

@@ -14,9 +14,9 @@ from ...description.sensor import Gps as GpsBlock
 from ...description.sensor import Noise as NoiseSpec
 from ...description.surroundings import SphericalCoordinates
 from ...geometry import Vec3, add, conjugate, rotate, transform
-from ...sensing.models import gps
-from ...sensing.models.motion import velocity_at
+from ...sensing import gps
 from ...sensing.noise import GAUSSIAN, sample_generator
+from ...sensing.sensor_models import velocity_at
 from ..base import Plugin
 from ..context import PluginError
 from ..frames import stamp_message

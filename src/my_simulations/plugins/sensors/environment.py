@@ -12,8 +12,8 @@ from typing import Any, List
 from ...description.sensor import Altimeter, Gps, Magnetometer, Noise
 from ...description.surroundings import SphericalCoordinates
 from ...geometry import transform
-from ...sensing.models import altimeter, gps, magnetometer
-from ...sensing.models.motion import velocity_at
+from ...sensing import gps
+from ...sensing.sensor_models import measure_altitude, measure_magnetic_field, velocity_at
 from ..base import Plugin
 from ..context import PluginError, Publication
 from ..frames import add_tf_prefix
@@ -119,7 +119,7 @@ class MagnetometerSensor(_SensorPlugin):
 
     def update(self) -> None:
         context = self.context
-        felt = magnetometer.measure(self._link.pose, self._mount, context.magnetic_field)
+        felt = measure_magnetic_field(self._link.pose, self._mount, context.magnetic_field)
         x, y, z = (noise.apply(value, context.now_ns) for noise, value in zip(self._axes, felt))
         message = context.message("sensor_msgs/MagneticField")
         message.header, field = self._header(), message.magnetic_field
@@ -144,7 +144,7 @@ class AltimeterSensor(_SensorPlugin):
 
     def update(self) -> None:
         context, ns = self.context, self.context.now_ns
-        found = altimeter.measure(self._link.pose, self._link.twist, self._mount, self._reference)
+        found = measure_altitude(self._link.pose, self._link.twist, self._mount, self._reference)
         height = self._up.apply(found.vertical_position, ns)
         speed = self._upwards.apply(found.vertical_velocity, ns)
         if self._height.wanted:

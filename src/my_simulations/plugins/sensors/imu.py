@@ -10,8 +10,7 @@ from typing import Any, Optional
 
 from ...description.sensor import Imu as ImuBlock
 from ...geometry import IDENTITY, IDENTITY_QUAT, Pose, Quat, Vec3, compose, multiply
-from ...sensing.models.imu import ImuSample, measure
-from ...sensing.models.motion import acceleration_between, velocity_at
+from ...sensing.sensor_models import ImuSample, acceleration_between, measure_motion, velocity_at
 from ..base import Plugin
 from ..context import Link, PluginError
 from ..frames import stamp_message
@@ -65,8 +64,8 @@ class Imu(Plugin):
         elapsed = (context.now_ns - self._last_ns) * 1e-9
         acceleration = acceleration_between(self._before, now, elapsed)
         self._before, self._last_ns = now, context.now_ns
-        return measure(self._link.pose, self._link.twist, acceleration, context.gravity,
-                       self._mount, self._reference)
+        return measure_motion(self._link.pose, self._link.twist, acceleration, context.gravity,
+                              self._mount, self._reference)
 
     def update(self) -> None:
         sample = self._noisy(self.measured())

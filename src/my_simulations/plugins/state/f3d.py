@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Optional, Tuple
 
 from ...geometry import Quat, Vec3, conjugate, multiply, rotate, scale, subtract
-from ...sensing.models.motion import velocity_at
+from ...sensing.sensor_models import velocity_at
 from ..base import Plugin
 from ..context import PluginError
 from ..frames import add_tf_prefix, stamp_message

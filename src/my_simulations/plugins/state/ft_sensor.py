@@ -10,7 +10,7 @@ from typing import Any, Optional
 
 from ...description.model import WORLD, Joint
 from ...description.sensor import ForceTorque
-from ...sensing.models.force_torque import measure
+from ...sensing.sensor_models import measure_wrench
 from ..base import Plugin
 from ..context import PluginError
 from ..frames import add_tf_prefix, stamp_message
@@ -73,7 +73,7 @@ class FtSensor(Plugin):
         wrench = context.joint_wrench(self._name)
         if wrench is None:
             return
-        sample = measure(wrench) if block is None or sensor is None else measure(
+        sample = measure_wrench(wrench) if block is None or sensor is None else measure_wrench(
             wrench, block.frame, block.measure_direction, self._joint.pose, sensor.pose)
         values = [value + noise for value, noise in zip(
             (*sample.force, *sample.torque), self._white.draw(6, self.context.now_ns))]

@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple, Tuple
 
-from ...description.surroundings import SphericalCoordinates
-from ...geometry import Vec3
+from ..description.surroundings import SphericalCoordinates
+from ..geometry import Vec3
 
 _A, _B = 6378137.0, 6356752.314245  # WGS 84, m
 _E2 = 1.0 - (_B / _A) ** 2

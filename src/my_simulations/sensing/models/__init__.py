@@ -1,1 +1,0 @@
-"""What sensors that look at nothing measure: pure functions of the state."""
