@@ -100,7 +100,7 @@ export function meshDialog(request: RequestFunction, use: (uri: string) => Promi
   return new Dialog({
     title: 'Add Mesh', name: 'model-mesh',
     content: [labelled('File', file),
-      h('p', {class: 'soft', text: 'With its textures; stored in ~/.gazebo/models. Or name one that is there:'}),
+      h('p', {class: 'soft', text: 'With its textures; stored in ~/.gazebo/models. Or enter the URI of an existing file:'}),
       labelled('URI', uri)],
     buttons: [{title: 'Cancel'}, {title: 'Add', primary: true, run: async () => {
       const found = file.files?.length ? await storedMesh(request, [...file.files]) : uri.value.trim();

@@ -231,8 +231,9 @@ function colorInput(field: InputField, commit: (value: unknown) => void, refuse:
   };
 }
 
+/** @param shape  what a part shows of its number; the others stay as exact as they are */
 function vectorInput(field: InputField, commit: (value: unknown) => void, refuse: (text: string) =>
-    void) {
+    void, shape: (value: number, at: number) => number = (value) => value) {
   const names = field.parts ?? [];
   let shown = names.map(() => 0);
   const take = (at: number, value: number) => {
@@ -254,7 +255,7 @@ function vectorInput(field: InputField, commit: (value: unknown) => void, refuse
       ...parts.map((part, at) =>
         h(
           'span',
-          {class: `part axis-${names[at]}`},
+          {class: `part axis-${'xyz'[at % 3]}`},
           h('i', {text: names[at], 'aria-hidden': 'true'}),
           part.element,
         ),
@@ -262,41 +263,19 @@ function vectorInput(field: InputField, commit: (value: unknown) => void, refuse
     ),
     show(value: unknown) {
       shown = numbersOf(value, names.map(() => 0));
-      parts.forEach((part, at) => part.show(shown[at]));
+      parts.forEach((part, at) => part.show(shape(shown[at], at)));
     },
   };
 }
 
 const POSE_PARTS = ['x', 'y', 'z', 'roll', 'pitch', 'yaw'];
 
-function poseInput(field: InputField, commit: (value: unknown) => void, refuse: (text: string) =>
-    void) {
-  let shown = [0, 0, 0, 0, 0, 0];
-  const take = (at: number, value: number) => {
-    shown = shown.map((old, index) => (index === at ? value : old));
-    commit(sevenOf(shown));
-  };
-  const parts = POSE_PARTS.map((name, at) =>
-    numberInput(
-      {type: 'number', label: `${field.label} ${name}`, fixed: field.fixed},
-      (value) => take(at, Number(value)),
-      refuse,
-    ),
-  );
-  const cell = (at: number) =>
-    h(
-      'span',
-      {class: `part axis-${'xyz'[at % 3]}`},
-      h('i', {text: POSE_PARTS[at], 'aria-hidden': 'true'}),
-      parts[at].element,
-    );
-  return {
-    element: h('div', {class: 'pose-input'}, ...POSE_PARTS.map((_, at) => cell(at))),
-    show(value: unknown) {
-      shown = value ? sixOf(numbersOf(value, [])) : [0, 0, 0, 0, 0, 0];
-      parts.forEach((part, at) => part.show(tidy(shown[at], at < 3 ? 1e5 : 1e4)));
-    },
-  };
+function poseInput({label, fixed}: InputField, commit: (value: unknown) => void,
+    refuse: (text: string) => void) {
+  const {element, show} = vectorInput({type: 'vector', label, fixed, parts: POSE_PARTS},
+    (six) => commit(sevenOf(numbersOf(six, []))), refuse,
+    (value, at) => tidy(value, at < 3 ? 1e5 : 1e4));
+  return {element, show: (value: unknown) => show(value && sixOf(numbersOf(value, [])))};
 }
 
 /** What fits the field; a physics engine's 0.49999998 is what the user put at 0.5. */
