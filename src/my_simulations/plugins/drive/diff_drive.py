@@ -11,7 +11,7 @@ from typing import Tuple
 from ..parameters import namespace_or
 from ..stepwise_change import StepwiseChange
 from .odometry import Odometer, OdometryDrive, WheelCounter
-from .wheels import VelocityCommand, WheelFrames, WheelStates
+from .wheels import VelocityCommand
 
 _REACHED = 0.01  # m/s: a wheel that is so near to its speed has it (gazebo_plugins)
 
@@ -34,20 +34,16 @@ class DiffDrive(OdometryDrive):
         self._odometer = Odometer(
             context, p.text("odometryTopic", "odom") if self._publishes else "",
             p.text("odometryFrame", "odom"), p.text("robotBaseFrame", "base_footprint"))
-        self._frames = WheelFrames(context, self._joints) if p.flag("publishWheelTF", False) \
-            else None
-        self._states = WheelStates(context, self._joints) \
-            if p.flag("publishWheelJointState", False) else None
+        self.offer_wheels(self._joints)
         hertz = p.number("updateRate", 100.0)
         self._change = StepwiseChange(context, hertz, self._accelerate)
         self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
                                         change=self._change)
         self.reset()
         # Encoders count at all updates, with and without subscribers.
-        topics = [*self._odometer.topics, *(self._states.topics if self._states else [])]
         transforms = self._publishes and self._broadcasts or self._frames is not None
-        if topics or transforms:
-            context.observe(hertz, self.publish, topics, transforms=transforms,
+        if self.topics or transforms:
+            context.observe(hertz, self.publish, self.topics, transforms=transforms,
                             remembers=self._encoder and self._publishes)
 
     def reset(self) -> None:
@@ -57,18 +53,6 @@ class DiffDrive(OdometryDrive):
         self._instructed = [0.0, 0.0]
         self.clock_set()
         self._drive((0.0, 0.0))
-
-    def publish(self) -> None:
-        """Odometry, as it is before the command of the same update (as the original)."""
-        if self._publishes:
-            pose, velocity = self.motion()
-            if self._broadcasts:
-                self._odometer.transform(pose)
-            self._odometer.publish(pose, velocity)
-        if self._frames is not None:
-            self._frames.send()
-        if self._states is not None:
-            self._states.send()
 
     def _accelerate(self, dt: float) -> bool:
         """Approach the command; return whether the wheel speeds have reached it."""

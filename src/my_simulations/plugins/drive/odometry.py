@@ -9,6 +9,7 @@ from ...geometry_messages import fill_pose
 from ..base import Plugin
 from ..context import Context, Joint, Publication
 from ..frames import add_tf_prefix, stamp_message
+from .wheels import WheelFrames, WheelStates
 
 _UNKNOWN_VARIANCE = 1e12  # of what a wheeled robot does not measure
 
@@ -146,7 +147,33 @@ class OdometryDrive(Plugin):
     """Integrates wheel odometry, and publishes it or the true motion."""
 
     _counter: WheelCounter
+    _odometer: Odometer
     _encoder: bool   # publish wheel odometry, else the true pose
+    _publishes = _broadcasts = True
+
+    def offer_wheels(self, joints: Sequence[Joint], with_motion: bool = False) -> None:
+        """Publish frames and joint states of the wheels if the parameters ask for it."""
+        context, p = self.context, self.context.parameters
+        self._frames = WheelFrames(context, joints) if p.flag("publishWheelTF", False) else None
+        self._states = WheelStates(context, joints, with_motion) \
+            if p.flag("publishWheelJointState", False) else None
+
+    @property
+    def topics(self) -> List[Publication]:
+        """All that `publish` writes to."""
+        return [*self._odometer.topics, *(self._states.topics if self._states else [])]
+
+    def publish(self) -> None:
+        """Odometry, as it is before the command of the same update (as the original)."""
+        if self._publishes:
+            pose, velocity = self.motion()
+            if self._broadcasts:
+                self._odometer.transform(pose)
+            self._odometer.publish(pose, velocity)
+        if self._frames is not None:
+            self._frames.send()
+        if self._states is not None:
+            self._states.send()
 
     def clock_set(self) -> None:
         """Measure time from now; keep the odometry pose."""

@@ -18,7 +18,7 @@ from ..context import Joint
 from ..parameters import namespace_or
 from ..stepwise_change import StepwiseChange
 from .odometry import Odometer, OdometryDrive, WheelCounter
-from .wheels import VelocityCommand, WheelFrames, WheelStates
+from .wheels import VelocityCommand
 
 _MOST_STEERING = math.pi / 2.0
 _SAME_ANGLE = 1e-6   # rad
@@ -47,17 +47,14 @@ class TricycleDrive(OdometryDrive):
         self._odometer = Odometer(context, p.text("odometryTopic", "odom"),
                                   p.text("odometryFrame", "odom"),
                                   p.text("robotBaseFrame", "base_link"))
-        joints = (self._steering, self._wheel, left, right)
-        self._frames = WheelFrames(context, joints) if p.flag("publishWheelTF", False) else None
-        self._states = WheelStates(context, joints, motion=True) \
-            if p.flag("publishWheelJointState", False) else None
+        self.offer_wheels((self._steering, self._wheel, left, right), with_motion=True)
         hertz = p.number("updateRate", 100.0)
         self._change = StepwiseChange(context, hertz, self._follow)
         self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
                                         change=self._change)
         self.reset()
-        context.observe(hertz, self.publish, transforms=True, remembers=self._encoder, topics=[
-            *self._odometer.topics, *(self._states.topics if self._states else [])])
+        context.observe(hertz, self.publish, self.topics, transforms=True,
+                        remembers=self._encoder)
 
     def _by_side(self, left: Joint, right: Joint) -> Tuple[Joint, Joint]:
         """The wheel further to the left first."""
@@ -73,16 +70,6 @@ class TricycleDrive(OdometryDrive):
         self.clock_set()
         self._wheel.drive(0.0, self._torque)
         self._change.begin()   # turns the steering to 0
-
-    def publish(self) -> None:
-        """Odometry, as it is before the command of the same update (as the original)."""
-        pose, velocity = self.motion()
-        self._odometer.transform(pose)
-        self._odometer.publish(pose, velocity)
-        if self._frames is not None:
-            self._frames.send()
-        if self._states is not None:
-            self._states.send()
 
     def _follow(self, dt: float) -> bool:
         """Approach the command; return whether motor and servo have reached it."""
