@@ -9,6 +9,7 @@ import pybullet
 import pytest
 from conftest import Lab, ground, inertial_of_box, slab
 from laws import Laws
+from mobile_bases import differential
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Cylinder, Sphere, Surface
@@ -216,6 +217,27 @@ def test_a_base_on_two_wheels_keeps_its_heading_as_its_command_steps(
         else:
             laws.at_most(f"{law}: yaw, degrees", abs(after - before), 0.05)
         before = after
+
+
+@pytest.mark.parametrize("heading", [0.0, 0.5])
+@pytest.mark.parametrize("step_size", [0.001, 0.002, 0.005, 0.01])
+@pytest.mark.parametrize("period", [0.01, 0.02, 0.05])   # of the commands, s
+def test_a_base_keeps_its_heading_as_its_caster_leaves_the_floor_in_a_stop(
+        lab: Lab, laws: Laws, heading: float, step_size: float, period: float):
+    """The friction that stopped the wheels as the caster landed must not turn the base later."""
+    lab.configure(step_size=step_size)
+    lab.load(ground(1.0))
+    base = differential(1.0)
+    robot = lab.load(base.model, (0, 0, 0), quat_from_rpy(0, 0, heading))
+    lab.seconds(1)
+    for speed in (0.5, 0.0):
+        before = _yaw(lab, robot)
+        for _ in range(round(1.0 / period)):
+            lab.apply(SetMotors(tuple(JointMotor(lab.joint_rows[robot, joint], rate, 10.0)
+                                      for joint, rate in base.rates(speed, 0.0).items())))
+            lab.steps(round(period / step_size))
+    laws.at_most("a base whose caster leaves the floor in a stop from 0.5 m/s: yaw, degrees",
+                 abs(_yaw(lab, robot) - before), 0.05)
 
 
 def test_a_wheel_of_many_shapes_stays_one_body(lab: Lab):

@@ -345,7 +345,7 @@ class WheelFriction(StepHelper):
             slide.biases[other] = bias
             if link.joint >= 0 and (slip > _HELD or norm(bias) > _CARRIES * sum(carried)):
                 slide.quiet = 0
-            slide.steady &= slip <= _SLIDES or slip > ended * _PERIOD / (steps * dt)
+            slide.steady &= slip <= _HELD or slip > ended * _PERIOD / (steps * dt)
             slide.acting += [(contact[PLACE], force, load, other)
                              for contact, force, load in zip(points, forces, carried)]
 
