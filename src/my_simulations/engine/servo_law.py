@@ -87,7 +87,7 @@ class ServoLaw:
         gives_effort: `advance` returns an effort; else the rate of a motor.
         steady: nothing is to be computed: a motor keeps `servo.target`.
         loop: about the target; None without gains.
-        last: what `advance` returned last.
+        last: what `advance` returned last; 0 while steady.
         before: the position, or the rate with a lag, commanded in the last step; None when there
             was none.
     """
@@ -108,6 +108,8 @@ class ServoLaw:
         self.steady = (servo.spline is None and servo.gains is None and self._inner is None
                        and (servo.drive != "effort" or servo.target == 0.0)
                        and servo.soft is None and servo.lags is None)
+        if self.steady:
+            self.last = 0.0  # `advance` is not called
         self.advance: Advance = self._advance
         if servo.soft is None and servo.drive == "effort" and self.loop is not None and not (
                 servo.of_rate or servo.wraps or self.loop.gains.antiwindup):

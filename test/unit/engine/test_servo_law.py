@@ -119,3 +119,11 @@ def test_a_rate_follows_its_target_with_the_lag_of_its_direction():
               for step in range(100, 200)][-1]
     assert fallen[0] == pytest.approx(risen * math.exp(-0.5))
     assert fallen[0] == fallen[1]
+
+
+def test_the_effort_of_a_servo_ends_with_a_command_of_0():
+    law = ServoLaw(JointServo(0, "effort", target=3.0), DT)
+    law.advance(0.0, 0.0, 0)
+    assert law.last == 3.0
+    law.change(JointServo(0, "effort", target=0.0))
+    assert law.steady and law.last == 0.0
