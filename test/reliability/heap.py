@@ -1,4 +1,4 @@
-"""How much memory this process holds."""
+"""Measures the memory of this process."""
 from __future__ import annotations
 
 import gc

@@ -1,4 +1,4 @@
-"""What clients reach: services, topics, the editor's messages, and what its inputs are made of."""
+"""Feeds changed inputs to services, topics and the editor's messages."""
 from __future__ import annotations
 
 import asyncio
@@ -46,13 +46,13 @@ class Messages:
         self._made: Dict[str, Make] = {}
 
     def of(self, kind: str) -> Make:
-        """What makes values of a field's type, in the range that a client can send."""
+        """Return a function that makes values of a field's type, in the range of its messages."""
         if kind not in self._made:
             self._made[kind] = self._maker(kind)
         return self._made[kind]
 
     def message(self, kind: Any) -> Make:
-        """What makes messages of a class."""
+        """Return a function that makes messages of a class."""
         fields = [self.of(one) for one in kind._slot_types]
         return lambda chance: kind(*[make(chance) for make in fields])
 
@@ -120,7 +120,7 @@ class Services:
                              ".request")
 
     def renew(self) -> None:
-        """Another world."""
+        """Start another world."""
         self._simulator.close()
         self._simulator, endpoints = service_requests.start(box("a"), arm("b"))
         self._answers = {endpoint.name: make_service_callback(endpoint) for endpoint in endpoints}
@@ -180,7 +180,7 @@ class Topics:
 
 
 class TopicViews:
-    """What pages are shown of the messages of any node."""
+    """The views of messages of any node that pages show."""
 
     def __init__(self, _folder: Path) -> None:
         makes = Messages((*NAMES, *ENCODINGS, "x", "y", "z", "rgb", "intensity"))
@@ -201,7 +201,7 @@ class TopicViews:
                              ".message")
 
     def close(self) -> None:
-        """Nothing is open."""
+        """Do nothing: nothing is open."""
 
     def _renew(self) -> None:
         self._viewers = {kind: Viewer(kind, lambda: 1.0) for kind in self._viewers}
@@ -284,7 +284,7 @@ class Editor:
                              self.renew, ".json")
 
     def renew(self) -> None:
-        """Another world and its editor."""
+        """Start another world and its editor."""
         self.close()
         self._number += 1
         place = self._folder / f"editor{self._number}"

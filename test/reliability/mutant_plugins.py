@@ -1,4 +1,4 @@
-"""Plugins in a world without physics: what their elements say, and the messages that they hear."""
+"""Feeds changed elements and messages to plugins in a world without physics."""
 from __future__ import annotations
 
 import importlib
@@ -29,7 +29,7 @@ Heard = Tuple[str, Callable[[Any], None]]
 
 
 class Context(FakeContext):
-    """Keeps the types of topics that are heard."""
+    """Keeps the types of subscribed topics."""
 
     def __init__(self, xml: str, **options: Any) -> None:
         super().__init__(xml, joints=JOINTS, **options)
@@ -53,7 +53,7 @@ def _text(name: str, kind: str) -> str:
 
 
 def parameters_of(made: Type[Plugin]) -> Dict[str, str]:
-    """What the source of a plugin and of those that it stems from reads, with fitting values."""
+    """Return the parameters that a plugin and its base classes read, with fitting values."""
     found: Dict[str, str] = {}
     for above in made.__mro__:
         if above.__module__.startswith("my_simulations.plugins"):
@@ -64,7 +64,7 @@ def parameters_of(made: Type[Plugin]) -> Dict[str, str]:
 
 
 def assert_finite(context: Context, name: str) -> None:
-    """What a plugin has ordered can be carried out: a motor that is told NaN ends a robot."""
+    """Check that all commands of a plugin are finite: a motor with NaN ends a robot."""
     orders = [value for joint in context.joints.values() for value in joint.motor or ()]
     orders += [joint.position for joint in context.joints.values()]
     orders += [value for push in context.wrenches.values() for part in push for value in part]

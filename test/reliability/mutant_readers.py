@@ -1,4 +1,4 @@
-"""What reads files, and what its inputs are made of."""
+"""Feeds changed files to the readers of files."""
 from __future__ import annotations
 
 import contextlib
@@ -73,13 +73,13 @@ _NAMESPACE = re.compile(rb"""xmlns=["'][^"']*["']""")
 
 
 def files(*suffixes: str) -> List[Path]:
-    """Of the project, by their endings."""
+    """Return the files of the project with one of these endings."""
     return [path for folder in FOLDERS for path in sorted((ROOT / folder).rglob("*"))
             if path.suffix in suffixes and path.stat().st_size <= LARGE]
 
 
 def tables(*modules: Any) -> List[Any]:
-    """Of readers, which say what they know."""
+    """Return the tables of readers, which list the known elements."""
     return [value for module in modules for value in vars(module).values()
             if hasattr(value, "children") and hasattr(value, "of")]
 
@@ -105,13 +105,13 @@ URDF = children_by_element(tables(urdf_tables))
 
 
 def features(issues: Iterable[Issue], more: Hashable = "read") -> List[Hashable]:
-    """What is new about an answer: codes of issues, and the elements that they are about."""
+    """Return the features of an answer: codes of issues with the names of their elements."""
     return [more, *((issue.code, issue.xpath.rpartition("/")[2].partition("[")[0][:20])
                     for issue in issues)]
 
 
 def read_document(text: Any, resolver: Resolver = Resolver([])) -> List[Hashable]:
-    """As the node reads a document, and writes again what it got."""
+    """Read a document as the node does, and write what was read."""
     try:
         found, issues = read_any(text, resolver, "fuzz.sdf")
     except InputError as fault:
@@ -125,7 +125,7 @@ def read_document(text: Any, resolver: Resolver = Resolver([])) -> List[Hashable
 
 
 def damaged(text: str, chance: Random) -> str:
-    """Now and then with a slice missing, doubled or replaced."""
+    """Return the text; one in twenty has a slice removed, doubled or replaced."""
     if chance.random() > 0.05:
         return text
     start = chance.randrange(len(text) + 1)

@@ -70,7 +70,7 @@ class Target:
 
 @dataclass
 class Run:
-    """What came of it.
+    """The results of a run.
 
     Attributes:
         growth: of memory since the run has settled, as a share of that.
@@ -194,7 +194,7 @@ def _too_long(_number: int, _frame: Any) -> None:
 
 @contextmanager
 def watchdog() -> Iterator[None]:
-    """What `run` needs around it, in the main thread."""
+    """Handle the timer signal of `run`; for the main thread."""
     before = signal.signal(signal.SIGPROF, _too_long)
     try:
         yield

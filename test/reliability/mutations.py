@@ -30,7 +30,7 @@ STRANGE_TEXTS = ("a", "b", "link", "world", "a::b", "", " ", "é", "🤖", "__mo
 
 
 class Element(NamedTuple):
-    """Of XML; what follows an end tag is left out."""
+    """An element of XML, without the text after its end tag."""
 
     tag: str
     attributes: Attributes
@@ -70,7 +70,7 @@ class XmlKnowledge:
         self.tags: List[str] = []
 
     def learn(self, element: Element) -> None:
-        """Keep what a document shows."""
+        """Keep names and values of a document."""
         if element.tag not in self.texts:
             self.tags.append(element.tag)
         texts = self.texts.setdefault(element.tag, [])
@@ -220,7 +220,7 @@ def _write(element: Element, put: Callable[[str], None]) -> None:
 
 
 def element_of(parsed: Any) -> Element:
-    """Of lxml's element."""
+    """Convert an element of lxml."""
     return Element(str(parsed.tag), tuple((str(n), str(v)) for n, v in parsed.attrib.items()),
                    (parsed.text or "").strip(),
                    tuple(element_of(child) for child in parsed if isinstance(child.tag, str)))
@@ -245,7 +245,7 @@ class TreeKnowledge:
         self._strange = strange
 
     def learn(self, tree: Any) -> None:
-        """Keep what a document shows."""
+        """Keep names and values of a document."""
         if isinstance(tree, dict):
             for key, value in tree.items():
                 if key not in self.values:
@@ -353,7 +353,7 @@ _PLAIN = re.compile(r"[A-Za-z_][\w/.:-]*\Z")
 
 
 def yaml_text(tree: Any, chance: Random) -> str:
-    """As a YAML document, in flow or block style."""
+    """Return a YAML document, in flow or block style."""
     if chance.random() < 0.3:
         return _flow(tree)
     out: List[str] = []

@@ -1,4 +1,4 @@
-"""How much of a proof is done: little in CI, all by `tools/test --long`."""
+"""The size of proofs: small in CI, full by `tools/test --long`."""
 from __future__ import annotations
 
 import os
@@ -8,7 +8,7 @@ IS_LONG = os.environ.get("MY_SIMULATIONS_LONG") == "1"
 
 
 def scaled(short: int, long: int) -> int:
-    """What this run does."""
+    """Return the count for this run, which is short or long."""
     return long if IS_LONG else short
 
 
@@ -17,7 +17,7 @@ ALLOWED = "MY_SIMULATIONS_PROOF_SECONDS"
 
 
 def allowance() -> Callable[[], float]:
-    """How much of what this proof may use is used up, 0 to 1 and more; 0 if it may use any."""
+    """Return a function for the used share of the allowed processor time; 0 without a limit."""
     most = float(os.environ.get(ALLOWED) or "inf")
     began = spent()
     return lambda: (spent() - began) / most

@@ -1,4 +1,4 @@
-"""Inputs changed by their structure, fast: all faults are told, none is raised, nothing grows."""
+"""Inputs with changed structure: all faults are reported, none is raised, memory stays."""
 from __future__ import annotations
 
 import os
@@ -12,7 +12,7 @@ from mutant_run import GROWTH, prove
 from proofs import scaled
 
 INPUTS = int(os.environ.get("MY_SIMULATIONS_MUTATIONS") or scaled(500, 1_000_000))
-"""Of each proof: ten of them make 10 million in a long run."""
+"""Inputs of each proof: ten proofs make 10 million in a long run."""
 
 
 pytestmark = pytest.mark.usefixtures("silent")

@@ -1,4 +1,4 @@
-"""Files of the project, damaged byte by byte: fast, so that millions of inputs are read."""
+"""Files of the project with damaged bytes are read or refused."""
 from __future__ import annotations
 
 import os

@@ -20,7 +20,7 @@ class GradingError(SimulationError):
 
 @dataclass(frozen=True)
 class CheckResult:
-    """What a check gave.
+    """The result of a check.
 
     Attributes:
         name: of the check.

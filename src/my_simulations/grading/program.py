@@ -299,7 +299,7 @@ def _needed(scratch: str) -> List[str]:
 
 
 def workspace_paths() -> List[str]:
-    """What programs of ROS read: this package, Python, and the packages of the workspace."""
+    """Return the folders that programs of ROS read: package, Python and workspace."""
     found = [own_directory(), sys.prefix, sys.base_prefix,
              os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))]
     for name in ("CMAKE_PREFIX_PATH", "ROS_PACKAGE_PATH", "PYTHONPATH", "GAZEBO_MODEL_PATH",

@@ -21,7 +21,7 @@ ARCHIVES = {".zip": "zip", ".tar.gz": "tar", ".tgz": "tar"}
 
 @dataclass(frozen=True)
 class Submission:
-    """What a student handed in.
+    """A submission of a student.
 
     Attributes:
         student: name, unique in a run: that of the folder, or of the file without its ending.

@@ -1,1 +1,1 @@
-"""What looks at the world: rays, cameras and sensor models. Plans and data import nothing."""
+"""Rays, cameras and sensor models. Plans and data import nothing."""

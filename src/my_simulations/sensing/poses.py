@@ -71,7 +71,7 @@ def matrix(pose: Pose) -> np.ndarray:
 
 
 def inverse(frame: np.ndarray) -> np.ndarray:
-    """Of a rigid transform, (4, 4)."""
+    """Return the inverse of a rigid transform, (4, 4)."""
     made = np.eye(4)
     made[:3, :3] = frame[:3, :3].T
     made[:3, 3] = -frame[:3, :3].T @ frame[:3, 3]

@@ -1,4 +1,4 @@
-"""What sensors that look at nothing measure, as in Gazebo Classic 11: functions of the state."""
+"""Measurements of sensors without rays or pictures, as functions of the state (Gazebo 11)."""
 from __future__ import annotations
 
 from typing import NamedTuple
@@ -43,7 +43,7 @@ def acceleration_between(before: Vec3, now: Vec3, elapsed: float) -> Vec3:
 
 
 class ImuSample(NamedTuple):
-    """What an inertial measurement unit reads without noise, in the sensor frame.
+    """A measurement of an inertial measurement unit without noise, in the sensor frame.
 
     Attributes:
         orientation: reference frame from sensor, x y z w.
@@ -58,7 +58,7 @@ class ImuSample(NamedTuple):
 
 def measure_motion(link: Pose, twist: Twist, acceleration: Vec3, gravity: Vec3, mount: Pose,
                    reference: Quat = IDENTITY_QUAT) -> ImuSample:
-    """What it reads.
+    """Return the measurement of an inertial measurement unit.
 
     Args:
         link: world pose of its link.
@@ -95,9 +95,7 @@ def measure_magnetic_field(link: Pose, mount: Pose, magnetic_field: Vec3) -> Vec
 
 
 class WrenchSample(NamedTuple):
-    """What a force-torque sensor reads without noise: force, N, and torque about the joint's
-    origin, N m.
-    """
+    """A measurement without noise: force, N, and torque about the joint's origin, N m."""
 
     force: Vec3
     torque: Vec3
@@ -106,7 +104,9 @@ class WrenchSample(NamedTuple):
 def measure_wrench(wrench: JointWrench, frame: str = "child",
                    measure_direction: str = "child_to_parent", joint: Pose = IDENTITY,
                    sensor: Pose = IDENTITY) -> WrenchSample:
-    """What it reads; the defaults are those of SDF, and of `libgazebo_ros_ft_sensor.so`.
+    """Return the measurement of a force-torque sensor of a joint.
+
+    The defaults are those of SDF, and of `libgazebo_ros_ft_sensor.so`.
 
     Args:
         wrench: of its joint.

@@ -100,7 +100,7 @@ def _terrain(part: Any, layers: Tuple[TerrainLayer, ...], base: float, opacity: 
 
 
 def own_surface(part: Any, opacity: float) -> Surface:
-    """What a part of a mesh (`formats.mesh.painted`) looks like by its file."""
+    """Return the surface of a part of a mesh (`formats.mesh.painted`) by its file."""
     paint = part.paint
     color = paint.color or _OF_MESH
     return Surface(color, emissive=paint.emission or _DULL, picture=paint.picture,

@@ -348,7 +348,7 @@ def write_world(plan: CasePlan, case: Case, path: str) -> str:
 
 
 def launch_command(world: str) -> List[str]:
-    """What opens a world in the editor, paused."""
+    """Return the command that opens a world in the editor, paused."""
     return ["roslaunch", "gazebo_ros", "empty_world.launch", f"world_name:={world}", "paused:=true"]
 
 

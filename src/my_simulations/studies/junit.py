@@ -14,7 +14,7 @@ _LONGEST = 500     # characters of a failure
 
 @dataclass(frozen=True)
 class TestResults:
-    """What became of the tests of a scenario.
+    """The results of the tests of a scenario.
 
     Attributes:
         tests: how many ran, skipped ones included.

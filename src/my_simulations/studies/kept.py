@@ -1,4 +1,4 @@
-"""What is kept of a case besides its row."""
+"""The files of a case besides its row."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ class CaseTrajectory:
     poses: np.ndarray
 
     def arrays(self, case: str) -> Dict[str, np.ndarray]:
-        """By their keys in the file."""
+        """Return the arrays by their keys in the file."""
         return {f"{case}.time": self.times, f"{case}.names": np.array(self.names, dtype=str),
                 f"{case}.pose": self.poses}
 

@@ -1,4 +1,4 @@
-"""What a case is made of besides its settings: contents of files, versions, the processor."""
+"""The inputs of a case besides its settings: contents of files, versions, the processor."""
 from __future__ import annotations
 
 import hashlib

@@ -1,4 +1,4 @@
-"""One row of a study's table: what became of a case."""
+"""One row of a study's table: the result of a case."""
 from __future__ import annotations
 
 import json
@@ -15,7 +15,7 @@ Measured = Union[float, bool]
 
 @dataclass
 class Row:
-    """What became of a case.
+    """The result of a case.
 
     Attributes:
         status: one of STATUSES.

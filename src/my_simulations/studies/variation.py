@@ -1,4 +1,4 @@
-"""What is varied in a study, and the values that it takes in each case."""
+"""The parameters of a study, and their values in each case."""
 from __future__ import annotations
 
 import hashlib

@@ -88,7 +88,7 @@ class _Reader:
         return found
 
     def joints(self) -> List[_Joint]:
-        """What `HIERARCHY` has; end sites are no joints."""
+        """Return the joints of `HIERARCHY`, without end sites."""
         if self._next()[:1] != ["HIERARCHY"]:
             raise self._fault("it is not BVH: it does not begin with HIERARCHY")
         found: List[_Joint] = []

@@ -40,7 +40,7 @@ def _line_of_stray_byte(path: str, changed: int) -> int:
 
 
 def _first_stray_byte(data: bytes) -> int:
-    """Where the first byte is that is not UTF-8; -1 for none, and in another named encoding."""
+    """Return the index of the first byte that is not UTF-8; -1 for none, or another encoding."""
     try:
         data.decode("utf-8")
     except UnicodeDecodeError as fault:

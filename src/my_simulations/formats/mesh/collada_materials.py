@@ -21,7 +21,7 @@ class ColladaMaterials:
             for kind in ("material", "effect", "image")}
 
     def paint_of(self, url: str, folder: str) -> Paint:
-        """What a material looks like; `folder`: where its pictures are looked for."""
+        """Return the paint of a material; `folder` contains its pictures."""
         effect = self._effect_of(url)
         shader = None if effect is None else _shader_of(effect)
         if shader is None:

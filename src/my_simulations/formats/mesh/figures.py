@@ -22,7 +22,7 @@ from .painted import PaintedPart, corners_of, merge_corners
 from .part import MOST_TRIANGLES, MeshError
 
 _MOST_BONES = 4
-"""Of a vertex; as many as the editor's page uses."""
+"""Bones of a vertex; the editor's page uses as many."""
 _LARGEST = 64 << 20
 """Bytes of a file with bones: no other limit applies to reading an animation."""
 
@@ -234,7 +234,7 @@ class _Binding:
             _inputs(influences)["WEIGHT"][0]].find("{*}float_array")), len(self._nodes))
 
     def of(self, vertices: Array) -> Skin:
-        """For these vertices of the geometry."""
+        """Return the skin of some vertices of the geometry."""
         index, weights = self._table
         return Skin(self._nodes, self._inverses, index[vertices], weights[vertices])
 

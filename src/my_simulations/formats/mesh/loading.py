@@ -182,7 +182,7 @@ def _is_costly(path: str, size: int) -> bool:
 
 
 def _read_elsewhere(path: str, submesh: str) -> Tuple[Any, Any]:
-    """As `triangles_of`, by another process with limits."""
+    """Return what `triangles_of` returns, read in another process with limits."""
     _, (vertices, triangles) = read_elsewhere("mesh", path, "mesh-unreadable", submesh=submesh)
     inside = len(triangles) and 0 <= triangles.min() and triangles.max() < len(vertices)
     if not inside or not vertices.shape[1:] == triangles.shape[1:] == (3,):

@@ -14,7 +14,7 @@ _TRANSFORM_TAGS = ("{*}matrix", "{*}translate", "{*}rotate", "{*}scale")
 
 Array = Any  # a NumPy array; its shape is documented at each use
 Placing = Tuple[str, str, Array]
-"""Its sid, its kind, its numbers."""
+"""The sid, the kind and the numbers of a transform."""
 
 
 def floats(element: Any) -> Array:
@@ -41,7 +41,7 @@ class Bones:
         self.parents: List[int] = []
 
     def add(self, name: str, is_joint: bool, parent: int) -> int:
-        """Put one more at the end; returns its number."""
+        """Append a bone; returns its number."""
         self.names.append(name)
         self.joints.append(is_joint)
         self.parents.append(parent)
@@ -143,7 +143,7 @@ class NodeTree(Bones):
 
 
 def placings_of(node: Any) -> List[Placing]:
-    """What says where a `<node>` is, in its order."""
+    """Return the transforms of a `<node>`, in the order of the file."""
     return [(one.get("sid") or "", one.tag.rsplit("}", 1)[-1], floats(one))
             for one in node.iterchildren(*_TRANSFORM_TAGS)]
 

@@ -16,7 +16,7 @@ _WHITE = (1.0, 1.0, 1.0)
 
 
 class Paint(NamedTuple):
-    """What triangles look like; colours sRGB.
+    """Colours, in sRGB, and picture of triangles.
 
     Attributes:
         color: diffuse colour, times the picture; its alpha is the opacity. None without a material.
@@ -42,7 +42,7 @@ def correct_opacity(opacity: float) -> float:
 
 
 def paint_of(material: Any) -> Paint:
-    """What a material of trimesh (of OBJ, glTF, PLY) looks like."""
+    """Return the paint of a material of trimesh (OBJ, glTF, PLY)."""
     if material is None:
         return Paint()
     if hasattr(material, "baseColorFactor"):

@@ -208,7 +208,7 @@ def _trimesh(mesh: Mesh, extension: str) -> List[PaintedPart]:
 
 
 def _shapes(mesh: Mesh, extension: str) -> "Iterator[Tuple[Any, Array, Array, Optional[Array]]]":
-    """Each mesh of trimesh in a file: with its faces, places of vertices and normals of corners."""
+    """Yield each mesh of trimesh in a file, its faces, its vertices and normals of corners."""
     import trimesh
     from trimesh.resolvers import FilePathResolver
 
@@ -235,7 +235,10 @@ def _shapes(mesh: Mesh, extension: str) -> "Iterator[Tuple[Any, Array, Array, Op
 
 
 def _cofactors(matrix: Any) -> Any:
-    """What turns normals: the transposed inverse times |det|, also of a flat, singular matrix."""
+    """Return the matrix that turns normals: the transposed inverse times |det|.
+
+    It also exists for a flat, singular matrix.
+    """
     one, two, three = matrix
     found = np.array([np.cross(two, three), np.cross(three, one), np.cross(one, two)])
     return -found if np.linalg.det(matrix) < 0 else found

@@ -23,7 +23,7 @@ def read_stl(data: bytes) -> List[MeshPart]:
 
 
 def binary_stl_end(data: bytes, size: int) -> int:
-    """Where the triangles of a binary STL file end, in bytes; 0 for an ASCII file.
+    """Return the end of the triangles of a binary STL file, in bytes; 0 for an ASCII file.
 
     Args:
         data: the file, or its first bytes, at least 84.

@@ -100,7 +100,7 @@ def _missing(one: NamedFile, path: str, mesh: str) -> Issue:
 
 
 def _advice(name: str, mesh: str) -> str:
-    """Where the file is expected, or where one of its name is."""
+    """Return the expected path of the file, or the path of a file with its name."""
     folder, base = os.path.dirname(mesh), os.path.basename(name.replace("\\", "/"))
     near = _same_name(base, folder)
     if near:
