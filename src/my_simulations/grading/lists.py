@@ -10,6 +10,7 @@ from typing import Any, Dict, List, Sequence
 from lxml import etree
 
 from ..simulator.safe_file import write_atomically
+from ..xml_characters import without_forbidden
 from .assignment import Assignment
 from .grader import STUDENTS
 from .mark import GRADED, CheckResult, Mark
@@ -75,26 +76,19 @@ def reason_with_location(one: CheckResult) -> str:
 
 
 def _junit(assignment: Assignment, marks: Sequence[Mark]) -> bytes:
-    root = etree.Element("testsuites", name=_xml(assignment.lab))
+    root = etree.Element("testsuites", name=without_forbidden(assignment.lab))
     for mark in marks:
         failed = [one for one in mark.results if not one.passed]
         suite = etree.SubElement(
-            root, "testsuite", name=_xml(mark.student), tests=str(len(mark.results)),
+            root, "testsuite", name=without_forbidden(mark.student), tests=str(len(mark.results)),
             failures=str(len(failed) if mark.status == GRADED else 0),
             errors=str(0 if mark.status == GRADED else len(failed)))
         for one in mark.results:
-            case = etree.SubElement(suite, "testcase", name=_xml(one.name),
-                                    classname=_xml(f"{assignment.lab}.{mark.student}"))
+            case = etree.SubElement(suite, "testcase", name=without_forbidden(one.name),
+                                    classname=without_forbidden(f"{assignment.lab}.{mark.student}"))
             if not one.passed:
                 kind = "failure" if mark.status == GRADED else "error"
-                etree.SubElement(case, kind, message=_xml(
+                etree.SubElement(case, kind, message=without_forbidden(
                     f"{one.points:g} of {one.most:g} points: {reason_with_location(one)}"))
     text: bytes = etree.tostring(root, encoding="UTF-8", xml_declaration=True, pretty_print=True)
     return text
-
-
-def _xml(text: str) -> str:
-    """A text without characters that XML does not allow."""
-    return "".join(char if char in "\t\n\r" or (" " <= char and not 0xD800 <= ord(char) <= 0xDFFF
-                                                and char not in "\ufffe\uffff") else "\ufffd"
-                   for char in text)
