@@ -10,6 +10,7 @@ from typing import Callable, Dict, FrozenSet, List, Optional, Sequence, Set, Tup
 import pybullet
 
 from ...geometry import (
+    ZERO3,
     Pose,
     Quat,
     Twist,
@@ -33,7 +34,6 @@ from .joint_servos import JointServos
 from .link_states import place
 from .step_helper import FAR, StepHelper
 
-_NOTHING = (0.0, 0.0, 0.0)
 _NOBODY: FrozenSet[int] = frozenset()
 _ROW = struct.Struct(f"={LINK_WIDTH}d")
 
@@ -193,7 +193,7 @@ class Forces(StepHelper):
 
         N and N m, world axes.
         """
-        force, torque = _NOTHING, _NOTHING
+        force, torque = ZERO3, ZERO3
         for wrench in self._acting.values():
             if isinstance(wrench, TimedWrench) and wrench.row == row:
                 body, part = self._parts[row]
@@ -316,12 +316,12 @@ class Forces(StepHelper):
         at, turn = place(body.uid, part.index)
         force, torque = _in_world(wrench, part, turn) if wrench.law is None \
             else self._computed(wrench, wrench.law, part.link_from_com.position)
-        if force != _NOTHING:
+        if force != ZERO3:
             pybullet.applyExternalForce(body.uid, part.index, force, at, pybullet.WORLD_FRAME)
-        if torque != _NOTHING and body.rigid:
+        if torque != ZERO3 and body.rigid:
             # Compensates Bullet's damping, which reduces the added velocity in this step.
             _spin_up(body.uid, turn, part.moments, scale(torque, dt / body.turn_kept))
-        elif torque != _NOTHING:
+        elif torque != ZERO3:
             pybullet.applyExternalTorque(body.uid, part.index, torque, pybullet.WORLD_FRAME)
 
     def _computed(self, wrench: TimedWrench, law: WrenchLaw, com: Vec3) -> Tuple[Vec3, Vec3]:
@@ -332,7 +332,7 @@ class Forces(StepHelper):
             position, rate = self._read_axes((wrench.axis_row,))
             joint = position, rate
         force, torque = law.wrench(Pose(n[0:3], n[3:7]), Twist(n[7:10], n[10:13]), com, joint)
-        found = (force, torque) if is_finite(*force, *torque) else (_NOTHING, _NOTHING)
+        found = (force, torque) if is_finite(*force, *torque) else (ZERO3, ZERO3)
         self._by_law[wrench.force_id] = found
         return found
 

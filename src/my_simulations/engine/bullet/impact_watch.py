@@ -28,7 +28,7 @@ from typing import Callable, Dict, List, NamedTuple, Optional, Set, Tuple
 import pybullet
 
 from ...description.shapes import Box, Empty, Plane, Sphere
-from ...geometry import Vec3, add, dot, norm, scale, subtract
+from ...geometry import ZERO3, Vec3, add, dot, norm, scale, subtract
 from . import collision_groups
 from .agenda import Agenda
 from .approach import Motions, extent, flies, tumbles
@@ -54,7 +54,6 @@ _BOUNCE = 8          # steps until the next check of a pair of bodies that touch
 _SOFT = 2e-3         # m/s: a slower impact does not tilt the body
 _SETTLES = 2.5       # steps of free fall: a body placed at rest on a surface gains less speed
 _TUMBLES = 5.0       # rad/s across gravity: what turns over so fast lands on a corner or an edge
-_NONE = (0.0, 0.0, 0.0)
 _FOR_IMPACTS = Accuracy(10, 1e-15)
 """With 50 iterations, a block ten times as high as wide keeps turning after it lands at 10 m/s."""
 
@@ -252,7 +251,7 @@ class ImpactWatch(StepHelper):
         """Return the steps until the next check of a body on the ground; 0 if it may land flat."""
         uid, slow = watched.body.uid, speed <= _RESTS
         if slow and watched.grounded:
-            return _SELDOM if here.linear == _NONE else _RESTS_EVERY
+            return _SELDOM if here.linear == ZERO3 else _RESTS_EVERY
         flew = watched.seen is not None and flies(
             watched.body, watched.seen[1], here.linear,
             scale(now.gravity, now.dt * (now.number - watched.seen[0])))

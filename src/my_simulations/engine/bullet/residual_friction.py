@@ -21,7 +21,7 @@ from typing import Callable, Dict, List, Sequence, Set
 
 import pybullet
 
-from ...geometry import Vec3, add, conjugate, cross, dot, norm, rotate, scale, subtract
+from ...geometry import ZERO3, Vec3, add, conjugate, cross, dot, norm, rotate, scale, subtract
 from ..body_plan import BASE
 from . import collision_groups
 from .agenda import Agenda
@@ -52,15 +52,12 @@ _EACH_EVERY = 16   # the same for a body that is corrected in each step, as it m
 _QUIET = 8         # such checks without a correction after which a fast body is checked seldom
 _SLOW_EVERY = 128  # steps between two checks of all other bodies that move
 _REST_EVERY = 512  # the same for a body at rest
-_CLEAR = 192       # steps until a body that flies far from others is checked again
 _FAST = 2e-3       # m/s, or rad/s: slower bodies may be at rest
 _MAY_STOP = 0.5    # m/s: slower bodies are checked in each step, as such friction may stop them
 _STUCK = 2e-5      # m/s: a smaller slip has no direction
 _BEYOND = 1.001    # of mu N: more friction violates Coulomb's law
 _TUMBLES = 1.5     # rad/s across gravity: the slip of a body that turns over is not predictable
-_REACH = 0.02      # m: contacts exist a little before surfaces meet
 _MOST_CONTACTS = 8 # a body with more that touches a moving body, or two bodies, is in a pile
-_NONE = (0.0, 0.0, 0.0)
 _OTHER_BODY = itemgetter(OTHER_BODY)
 
 # Classes of bodies by their contacts:
@@ -85,17 +82,15 @@ class ResidualFriction(StepHelper):
         self._fast: Dict[int, None] = {}
         self._each_step: Dict[int, int] = {}   # checks since the last correction
         self._new: Set[int] = set()            # changed by a command since the last step
-        self._planes: Set[int] = set()
         self._mu: Dict[LinkKey, float] = {}    # of surfaces with one coefficient
         self.body_tables = (self._bodies, self._trees, self._moving, self._agenda, self._fast,
-                            self._each_step, self._new, self._planes, self._mu)
+                            self._each_step, self._new, self._mu)
 
     def add(self, body: Body) -> None:
         """Register a new body; only rigid ones that move and can have several contacts matter."""
         self._mu.update({(uid, part.index): part.mu for uid, part in body.surfaces
                          if not is_direction_dependent(of_link(part.link))})
         if not body.moves:
-            self._planes |= body.with_role("plane")  # infinite; a box below has the same contacts
             return
         self._moving.add(body.uid)
         if not body.rigid:
@@ -133,23 +128,20 @@ class ResidualFriction(StepHelper):
             elif found != _SLIDES or uid not in self._new and self._rolls(uid):
                 del self._each_step[uid]
                 if found == _FLIES:
-                    self._check_path(uid, step, dt, gravity)
-                    continue
-                self._fast.pop(uid, None)
-                if found == _SLIDES:
+                    self._fast[uid] = None
+                else:
+                    self._fast.pop(uid, None)
+                if found != _PILED:
                     self._agenda.plan(uid, next_multiple(step + _FAST_EVERY, _EVERY))
         for uid in self._agenda.take(step):
             wait = self._check_interval(uid, seen, dt, gravity)
-            if wait:
-                self._agenda.plan(uid, next_multiple(step + wait, _EVERY))
-            else:
-                self._check_path(uid, step, dt, gravity)
+            self._agenda.plan(uid, next_multiple(step + wait, _EVERY))
         self._new.clear()
 
     # -- selection -------------------------------------------------------------------------------
 
     def _check_interval(self, uid: int, seen: Set[int], dt: float, gravity: Vec3) -> int:
-        """Decide how often to check a body. Returns the steps until the next check; 0 if it flies.
+        """Decide how often to check a body. Returns the steps until the next check.
 
         Bodies that slide slowly, or were corrected in the last 128 steps, are checked in each step.
         """
@@ -178,25 +170,7 @@ class ResidualFriction(StepHelper):
             self._each_step[uid] = 0
         elif found == _PILED:
             del self._fast[uid]
-        return {_FLIES: 0, _SLIDES: _FAST_EVERY}.get(found, _SLOW_EVERY)
-
-    def _check_path(self, uid: int, step: int, dt: float, gravity: Vec3) -> None:
-        """Skip a flying body while no other body is near its path; otherwise check it often."""
-        centre = pybullet.getBasePositionAndOrientation(uid)[0]
-        linear = pybullet.getBaseVelocity(uid)[0]
-        reach, span = self._bodies[uid].radius + _REACH, (_CLEAR + _EVERY) * dt
-        ways = [v * span + g * span * span / 2.0 for v, g in zip(linear, gravity)]
-        rise = norm(gravity) * span * span / 8.0  # largest height of a parabola above its chord
-        low = [c + min(0.0, way) - reach - rise for c, way in zip(centre, ways)]
-        high = [c + max(0.0, way) + reach + rise for c, way in zip(centre, ways)]
-        near = pybullet.getOverlappingObjects(low, high) or ()
-        if all(other == uid or other in self._planes for other, _ in near):
-            self._fast.pop(uid, None)
-            wait = _CLEAR
-        else:
-            self._fast[uid] = None
-            wait = _FAST_EVERY
-        self._agenda.plan(uid, next_multiple(step + wait, _EVERY))
+        return _FAST_EVERY if found in (_FLIES, _SLIDES) else _SLOW_EVERY
 
     # -- correction ------------------------------------------------------------------------------
 
@@ -215,7 +189,7 @@ class ResidualFriction(StepHelper):
                 continue
             node = (contact[OTHER_BODY], contact[OTHER_LINK])
             loads[node] = loads.get(node, 0.0) + contact[LOAD]
-            frictions[node] = add(frictions.get(node, _NONE), friction_force(contact))
+            frictions[node] = add(frictions.get(node, ZERO3), friction_force(contact))
         mu = self._mu.get((uid, BASE), inf)
         return any(norm(frictions[node]) > _BEYOND * load * min(mu, self._mu[node])
                    for node, load in loads.items() if node in self._mu)

@@ -25,6 +25,7 @@ from ...description.model import Link
 from ...description.shapes import Capsule, Cylinder, Empty, Heightmap, Mesh
 from ...geometry import (
     IDENTITY,
+    ZERO3,
     Pose,
     Vec3,
     conjugate,
@@ -61,7 +62,6 @@ _HINGED = 3       # checks until a rolling wheel, or a free link of an arm, is c
 _PATIENCE = 8     # checks until a sleeping or upright cylinder is checked again
 _SHIFT = 1e-5     # m between two checks: a shorter motion is drift
 _LAG = 0.1        # of a wheel's radius: five times the largest lag of Bullet's contact points
-_NONE = (0.0, 0.0, 0.0)
 
 _PARTING = 5.0      # 1/s: separation rate of the overlaps of all other contacts
 _MOST = 0.2         # largest share of an overlap that is removed in one step
@@ -208,8 +208,8 @@ class RollingContacts(StepHelper):
                                      if self._rollers[key].seamed)
         for uid in self._standing:
             linear, angular = pybullet.getBaseVelocity(uid)
-            if (linear != _NONE or angular != _NONE) and _slow(linear, angular):
-                pybullet.resetBaseVelocity(uid, _NONE, _NONE)
+            if (linear != ZERO3 or angular != ZERO3) and _slow(linear, angular):
+                pybullet.resetBaseVelocity(uid, ZERO3, ZERO3)
         flies, landed = self._flies, self._landed
         rolling = [key for key in self._rolling
                    if key[0] not in landed and not flies(key[0], step)]
@@ -241,7 +241,7 @@ class RollingContacts(StepHelper):
         if roller.body.rigid:
             linear, angular = pybullet.getBaseVelocity(uid)
             seen, roller.seen = roller.seen, None
-            roller.still = roller.still + 1 if linear == angular == _NONE else 0
+            roller.still = roller.still + 1 if linear == angular == ZERO3 else 0
             if roller.still:
                 if roller.still >= _ASLEEP:
                     self._standing.pop(uid, None)
