@@ -116,8 +116,8 @@ def requirements(tmp_path):
 
 def test_pip_takes_versions_that_run_on_old_pythons(tmp_path):
     found = requirements(tmp_path)
-    assert "pycollada==0.9" in found['python_version < "3.9"']
-    assert "pycollada>=0.9.3" in found['python_version >= "3.9"']
+    assert "glcontext==3.0.0" in found['python_version < "3.9"']
+    assert "glcontext>=3.1.0" in found['python_version >= "3.9"']
     assert "trimesh==4.12.2" in found['python_version < "3.10"']
     assert "pybullet>=3.2.7" in found[""]
     for condition, lines in found.items():
