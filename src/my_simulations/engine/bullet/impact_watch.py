@@ -11,7 +11,8 @@ Bullet finds one contact point per step and pair, and four at once only for two 
 figures: doc/dev/contacts.md, "Landings"). So in the step in which a flying body touches a surface,
 `LandingPoints` tilts it back and forth by 2 mrad about the contact, and Bullet detects contacts
 after each tilt. The body stays tilted by 0.1 mrad: then the point that the step adds is a corner
-too, and does not replace a better one. A body that turns over fast is not checked for landings.
+too, and does not replace a better one. A body that turns over fast is not checked for landings, and
+a box or a cylinder that is too tilted to land flat not before it can have turned that far.
 
 Each body has one plan. A slow body on the ground is checked again when gravity can have made it
 fast, and periodically for whether it flies. For a fast or flying body, a search finds the bodies in
@@ -35,6 +36,7 @@ from .approach import Motions, extent, flies, tumbles
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
 from .contact_points import DISTANCE, LOAD, NORMAL, OTHER_PLACE, PLACE
+from .flat_faces import flat_axes, tilt_beyond_flat
 from .landing_points import Filters, LandingPoints, Touch, extents_across
 from .link_states import AT_REST, Motion
 from .step_helper import StepHelper
@@ -141,11 +143,12 @@ class ImpactWatch(StepHelper):
         self._bouncing: Set[int] = set()
         self._radii: Dict[int, float] = {}        # of bounding spheres of rigid bodies, m
         self._uneven: Set[int] = set()            # with other shapes than boxes, balls and planes
+        self._flat: Dict[int, Tuple[Vec3, ...]] = {}   # normals of flat faces
         self._floors: Set[int] = set()      # boxes below planes: they touch what the planes do
         # By body: the step of the next search for bodies in reach, and those found last.
         self._near: Dict[int, Tuple[int, List[int]]] = {}
         self.body_tables = (self._watched, self._agenda, self._meets, self._moving,
-                            self._bouncing, self._radii, self._uneven, self._floors)
+                            self._bouncing, self._radii, self._uneven, self._flat, self._floors)
 
     def add(self, body: Body) -> None:
         self._near.clear()
@@ -164,6 +167,7 @@ class ImpactWatch(StepHelper):
             return
         self._watched[body.uid] = _Watched(body)
         self._agenda.plan(body.uid, 0)
+        self._flat[body.uid] = flat_axes(body)
         self._meets[body.uid] = [(part.index, collision_groups.moving(part.link))
                                  for part in body.colliders]
         if any(restitution(of_link(part.link)) > 0.0 for part in body.colliders):
@@ -339,15 +343,18 @@ class ImpactWatch(StepHelper):
             return step + max(1, int(min(ahead, steps))), step + ahead
         nearing = there_in - dot(here.linear, normal) + norm(here.angular) * path.radius
         free = max(0.0, gap) / max(1e-9, dt * (nearing + ahead * now.fall))
-        lands = speed_in > max(_SOFT, _SETTLES * now.fall)
+        tilt = tilt_beyond_flat(self._flat[uid], here.orientation, normal)
+        turning = tilt / max(dt * norm(here.angular), tilt / ahead) if tilt > 0.0 else 0.0
         if gap > 0.0:
-            steps = min(steps, free)
-        elif lands:
+            steps = min(steps, max(free, turning))
+        elif speed_in <= max(_SOFT, _SETTLES * now.fall):   # it rests there, or moves away
+            steps = min(ahead, max(_BOUNCE, turning))
+        elif tilt > 0.0:   # it lands on a corner, for which one point is enough
+            steps = turning
+        else:
             steps = 1.0
             path.touches.append(Touch(uid, other, gap, nearest[OTHER_PLACE], normal, here,
                                       *extents_across(path.low, path.high, normal)))
-        else:   # it rests there, or moves away
-            steps = min(ahead, _BOUNCE)
         return step + max(1, int(steps)), step + int(min(ahead, free))
 
     def _move_back(self, body: Body, path: _Path, now: _Step) -> None:

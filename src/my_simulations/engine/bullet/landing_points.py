@@ -11,7 +11,7 @@ from . import collision_groups
 from .contact_points import DISTANCE, PLACE
 from .link_states import Motion
 
-_MOST_TILT = 0.15
+MOST_TILT = 0.15
 """Largest tilt in the search, rad."""
 
 Filters = List[Tuple[int, collision_groups.Filter]]
@@ -48,7 +48,7 @@ class Touch(NamedTuple):
     @property
     def most(self) -> float:
         """The largest tilt, rad, with which the whole face is inside the other body."""
-        return min(_MOST_TILT, -self.gap / self.width)
+        return min(MOST_TILT, -self.gap / self.width)
 
     @property
     def raised(self) -> float:
