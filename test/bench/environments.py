@@ -16,6 +16,7 @@ import os
 import time
 from typing import Callable, TextIO, Tuple
 
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")   # idle ones of `bare` would slow down ours
 import numpy as np
 from bare_tasks import SCENES, Bare
 from server import children, processor

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..geometry import Pose
 from ..python_api import OpenWorld, Randomisation, RobotOptions, WorldChoice
+from ..python_api.kinematics import damped_step
 from . import arm_scene
 from .task_models import box, disc
 from .world_env import Evaluation, View, WorldEnv, clipped_observation, symmetric_box
@@ -113,8 +114,7 @@ def _axis_rates(world: OpenWorld, velocity: np.ndarray) -> np.ndarray:
     lean = -2.0 * np.sign(hand[6] or 1.0) * hand[3:6]  # to the orientation 0, for small angles
     jacobian = world.robot("arm").jacobian("hand", arm_scene.TOOL)[:, :6]
     wanted = np.concatenate((velocity, _UPRIGHT * lean))
-    rates = jacobian.T @ np.linalg.solve(
-        jacobian @ jacobian.T + _DAMPING ** 2 * np.eye(6), wanted)
+    rates = damped_step(jacobian, wanted, _DAMPING)
     return rates / max(1.0, float(np.abs(rates).max()) / arm_scene.FASTEST)
 
 

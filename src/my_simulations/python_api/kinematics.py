@@ -228,10 +228,23 @@ class InverseKinematics:
         return np.concatenate([miss, turn]), jacobian
 
 
+def damped_step(jacobian: np.ndarray, way: np.ndarray, damping: float) -> np.ndarray:
+    """Return the x that minimises |jacobian x - way|^2 + |damping x|^2, shape (n,).
+
+    Args:
+        jacobian: (m, n).
+        way: (m,).
+        damping: above 0; bounds x near singular poses.
+    """
+    # Not by np.linalg.solve: for it, OpenBLAS wakes threads that then keep the processors busy.
+    count = jacobian.shape[1]
+    found: np.ndarray = np.linalg.lstsq(np.vstack((jacobian, damping * np.eye(count))),
+                                        np.concatenate((way, np.zeros(count))), rcond=None)[0]
+    return found
+
+
 def _step(jacobian: np.ndarray, miss: np.ndarray) -> np.ndarray:
-    damped = jacobian @ jacobian.T + _DAMPING ** 2 * min(1.0, float(miss @ miss)) * np.eye(
-        len(miss)) + 1e-12 * np.eye(len(miss))
-    step = jacobian.T @ np.linalg.solve(damped, miss)
+    step = damped_step(jacobian, miss, _DAMPING * min(1.0, float(np.linalg.norm(miss))) + 1e-6)
     longest = float(np.max(np.abs(step)))
     return step if longest <= _LONGEST_STEP else step * (_LONGEST_STEP / longest)
 
