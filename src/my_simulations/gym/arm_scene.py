@@ -9,7 +9,7 @@ import gymnasium
 import numpy as np
 
 from ..geometry import Pose, rotate
-from ..python_api import OpenWorld
+from ..python_api import OpenWorld, Readings
 from ..resources.package_files import own_directory
 
 AXES = ("turn", "lift", "elbow", "roll", "pitch", "hand_turn")
@@ -33,23 +33,26 @@ class ArmState:
     Attributes:
         positions, rates: of the six axes, rad and rad/s, shape (6,).
         fingers: positions of both, m; 0 is open, 0.044 closed.
+        hand: pose of the hand in the world, as a row of `Readings.pose`.
         tool: position of `TOOL` in the world, m.
     """
 
     positions: np.ndarray
     rates: np.ndarray
     fingers: np.ndarray
+    hand: np.ndarray
     tool: np.ndarray
 
 
-def read_arm(world: OpenWorld) -> ArmState:
+def read_arm(world: OpenWorld, links: Readings) -> ArmState:
+    """`links`: of the world, as it is now."""
     joints = world.joints()
     first = joints.position.names.index("arm::turn")
     axes, fingers = slice(first, first + 6), slice(first + 6, first + 8)
-    hand = world.links().pose["arm::hand"]
+    hand = links.pose["arm::hand"]
     tool = hand[:3] + rotate(tuple(hand[3:].tolist()), TOOL)
     return ArmState(joints.position.array[axes], joints.rate.array[axes],
-                    joints.position.array[fingers], tool)
+                    joints.position.array[fingers], hand, tool)
 
 
 def drive_axes(world: OpenWorld, rates: np.ndarray) -> None:

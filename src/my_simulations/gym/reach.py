@@ -55,7 +55,7 @@ class Reach:
         arm_scene.drive_axes(world, np.clip(action, -1.0, 1.0) * arm_scene.FASTEST)
 
     def observe(self, world: OpenWorld) -> Any:
-        arm = arm_scene.read_arm(world)
+        arm = arm_scene.read_arm(world, world.links())
         left = math.dist(arm.tool, self._target)
         self._before, self._left = left if self._left is None else self._left, left
         numbers = clipped_observation(self._numbers,
