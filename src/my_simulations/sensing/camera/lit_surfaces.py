@@ -87,10 +87,11 @@ class LitSurfaces:
             tuple(bool(bumps) for _, bumps in layers)), lighting)
         program = self._programs[name]
         for uniform, values in batch.uniforms.items():
-            if uniform in program and isinstance(values, bytes):
-                _write(program[uniform], values)
-            elif uniform in program:
-                program[uniform] = values
+            member = program.get(uniform, None)   # `in` looks at all members, one after the other
+            if member is not None and isinstance(values, bytes):
+                _write(member, values)
+            elif member is not None:
+                member.value = values
         if texture is not None:
             texture.use(location=0)
         for n, (map_of_layer, bumps) in enumerate(layers):
@@ -115,8 +116,9 @@ class LitSurfaces:
             lighting.told.add(name)
             program = self._programs[name]
             for uniform, values in lighting.values.items():
-                if uniform in program:
-                    _write(program[uniform], values.tobytes())
+                member = program.get(uniform, None)
+                if member is not None:
+                    _write(member, values.tobytes())
         return name
 
 
