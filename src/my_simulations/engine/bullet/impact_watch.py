@@ -36,7 +36,7 @@ from .approach import Motions, extent, flies, tumbles
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
 from .contact_points import DISTANCE, LOAD, NORMAL, OTHER_PLACE, PLACE
-from .flat_faces import flat_axes, tilt_beyond_flat
+from .flat_landings import flat_axes, tilt_beyond_flat
 from .landing_points import Filters, LandingPoints, Touch, extents_across
 from .link_states import AT_REST, Motion
 from .step_helper import StepHelper
