@@ -1,7 +1,7 @@
 """Instances of the same triangles and surface, drawn together."""
 from __future__ import annotations
 
-from typing import Any, Dict, List, Tuple, Union
+from typing import Any, Dict, Hashable, List, Tuple, Union
 
 import numpy as np
 
@@ -24,7 +24,8 @@ class Batch:
         ahead: z in the view frame of what was uploaded, on average; of clear surfaces only.
     """
 
-    def __init__(self, context: Any, programs: Dict[str, Any], piece: Piece, shadows: bool) -> None:
+    def __init__(self, context: Any, programs: Dict[Hashable, Any], piece: Piece,
+                 shadows: bool) -> None:
         self.surface: Surface = piece.surface
         self.uniforms = _uniforms(piece.surface)
         self.casts_shadow = shadows and not piece.surface.clear
@@ -40,7 +41,7 @@ class Batch:
         self._vertices = context.buffer(piece.rows.tobytes())
         self._index = context.buffer(piece.triangles.tobytes())
         self._instances: Any = None
-        self._arrays: Dict[str, Any] = {}
+        self._arrays: Dict[Hashable, Any] = {}
 
     def add(self, owner: str, row: int, local: np.ndarray) -> None:
         """Add an instance: a visual of `owner`, with the row of its pose, and its (4, 4) matrix."""
@@ -72,7 +73,7 @@ class Batch:
             self._instances = self._context.buffer(reserve=table.nbytes * 2, dynamic=True)
         self._instances.write(table.tobytes())
 
-    def draw(self, program: str, culled: bool = True) -> None:
+    def draw(self, program: Hashable, culled: bool = True) -> None:
         """Draw what was uploaded; with `culled` only faces that are seen from their front.
 
         The back faces of a double-sided surface are drawn, too.

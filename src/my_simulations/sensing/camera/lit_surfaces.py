@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Sequence, Set, Tuple
+from typing import Any, Dict, Hashable, List, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -23,7 +23,7 @@ class Lighting:
     fog: str
     kinds: Tuple[Tuple[str, int], ...]
     values: Dict[str, np.ndarray]
-    told: Set[str] = field(default_factory=set)
+    told: Set[shaders.LitKind] = field(default_factory=set)
 
 
 class LitSurfaces:
@@ -31,12 +31,12 @@ class LitSurfaces:
 
     Args:
         context: the OpenGL context.
-        programs: by name, to which those of kinds of surfaces are added.
+        programs: by name; those of kinds of surfaces are added by kind.
         textures: of surfaces.
         maps: the shadow maps.
     """
 
-    def __init__(self, context: Any, programs: Dict[str, Any], textures: Textures,
+    def __init__(self, context: Any, programs: Dict[Hashable, Any], textures: Textures,
                  maps: Sequence[Any]) -> None:
         self._context = context
         self._programs = programs
@@ -80,12 +80,12 @@ class LitSurfaces:
         layers = [(self._textures.of_layer(layer), n < shaders.MOST_BUMPS
                    and self._textures.bumps_of(layer))
                   for n, layer in enumerate(surface.layers[:shaders.MOST_LAYERS])]
-        name = self._program(shaders.LitKind(
+        kind = shaders.LitKind(
             texture is not None, surface.lit, surface.lit and max(surface.specular[:3]) > 0.0,
             self._textures.cutting(surface) is not None, surface.blended,
             lighting.fog, lighting.kinds if surface.lit else (),
-            tuple(bool(bumps) for _, bumps in layers)), lighting)
-        program = self._programs[name]
+            tuple(bool(bumps) for _, bumps in layers))
+        program = self._program(kind, lighting)
         for uniform, values in batch.uniforms.items():
             member = program.get(uniform, None)   # `in` looks at all members, one after the other
             if member is not None and isinstance(values, bytes):
@@ -98,13 +98,12 @@ class LitSurfaces:
             map_of_layer.use(location=shaders.FIRST_LAYER + n)
             if bumps:
                 bumps.use(location=shaders.FIRST_BUMPS + n)
-        batch.draw(name)
+        batch.draw(kind)
 
-    def _program(self, kind: shaders.LitKind, lighting: Lighting) -> str:
-        """The name of the program for surfaces of a kind, with what a picture sets set."""
-        name = repr(kind)
-        if name not in self._programs:
-            made = self._programs[name] = self._context.program(
+    def _program(self, kind: shaders.LitKind, lighting: Lighting) -> Any:
+        """The program for surfaces of a kind, with what a picture sets set."""
+        if kind not in self._programs:
+            made = self._programs[kind] = self._context.program(
                 shaders.LIT_VERTEX, shaders.lit_fragment(kind))
             for unit, sampler in enumerate((
                     "picture", "shadow0", "shadow1",
@@ -112,14 +111,14 @@ class LitSurfaces:
                     *(f"bumps{n}" for n in range(shaders.MOST_BUMPS)))):
                 if sampler in made:
                     made[sampler] = unit
-        if name not in lighting.told:
-            lighting.told.add(name)
-            program = self._programs[name]
+        program = self._programs[kind]
+        if kind not in lighting.told:
+            lighting.told.add(kind)
             for uniform, values in lighting.values.items():
                 member = program.get(uniform, None)
                 if member is not None:
                     _write(member, values.tobytes())
-        return name
+        return program
 
 
 def _write(member: Any, values: bytes) -> None:

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import math
 from itertools import chain
-from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
+from typing import Any, Callable, Dict, Hashable, Iterator, List, Optional, Tuple
 
 import numpy as np
 
@@ -19,7 +19,8 @@ from ..surfaces import pieces_of
 from . import distortion, shaders
 from .batches import Batch
 from .context import Targets, draws_with_a_card, load_gl_finish, new_context
-from .frustum import check, is_in_view, projection
+from .frustum import check, projection
+from .instance_table import InstanceTable
 from .kept_pictures import Drawn, PictureCache
 from .lamps import (
     SHADOW_SIZE,
@@ -52,7 +53,7 @@ class Renderer:
         self._finish = load_gl_finish()
         self._smooth = 4 if draws_with_a_card(self._context) else 1
         program = self._context.program
-        self._programs = {
+        self._programs: Dict[Hashable, Any] = {
             "range": program(*shaders.plain_programs("range", cut=False)),
             "shadow": program(*shaders.plain_programs("shadow", cut=False)),
             "sky": program(shaders.SKY_VERTEX, shaders.SKY_FRAGMENT)}
@@ -62,6 +63,7 @@ class Renderer:
         self._batches: Dict[Tuple[str, int], Batch] = {}
         self._scenery = Scenery()
         self._scenic: List[Batch] = []
+        self._instances: Optional[InstanceTable] = None   # of all batches
         self._textures = Textures(self._context, lambda text: self._trouble(text))
         self._lights: List[Light] = []
         self._scene = Scene()
@@ -78,8 +80,13 @@ class Renderer:
         self._wide: Dict[CameraSpec, LensMap] = {}
         self._lenses: Dict[CameraSpec, Tuple[np.ndarray, np.ndarray]] = {}
 
-    def add(self, body: Body) -> None:
+    def _forget(self) -> None:
+        """What is seen changes: kept pictures and the table of instances are not valid any more."""
         self._kept.forget()
+        self._instances = None
+
+    def add(self, body: Body) -> None:
+        self._forget()
         for n, link in enumerate(body.model.links):
             for m, visual in enumerate(link.visuals):
                 if visual.transparency >= 1.0:
@@ -113,7 +120,7 @@ class Renderer:
 
     def remove(self, name: str) -> None:
         """A model has gone; what only it was made of is forgotten, too."""
-        self._kept.forget()
+        self._forget()
         for key, batch in list(self._batches.items()):
             if name in batch.owners:
                 batch.remove(name)
@@ -122,14 +129,14 @@ class Renderer:
                     del self._batches[key]
 
     def set_lights(self, lights: List[Light], scene: Scene) -> None:
-        self._kept.forget()
+        self._forget()
         self._lights, self._scene = lights, scene
 
     def set_scenery(self, scenery: SetScenery) -> None:
         """Roads and actors."""
         if scenery == self._scenery.told:
             return
-        self._kept.forget()
+        self._forget()
         for batch in self._scenic:
             batch.release()
         self._scenery = Scenery(scenery, self._trouble)
@@ -171,6 +178,7 @@ class Renderer:
                outputs: Tuple[str, ...], ns: int) -> Drawn:
         for part, rows in self._scenery.take_reshaped_parts(ns):
             self._scenic[part].reshape(rows)
+            self._instances = None
         view = _VIEW_FROM_SENSOR @ inverse(frame)
         links = matrices(poses)
         rgb = depth = labels = None
@@ -195,21 +203,15 @@ class Renderer:
 
         Transparent ones are sorted, the farthest first; `casters`: only those that cast shadows.
         """
-        for batch in self._all():
-            here = self._here(batch, links)
-            frames = view @ links[batch.rows[here]] @ batch.local[here]
-            if casters and not batch.casts_shadow:
-                frames, here = frames[:0], here[:0]
-            if spec is not None:
-                center = frames[:, :3, :3] @ batch.center + frames[:, :3, 3]
-                near_enough = is_in_view(center, batch.radius, spec)
-                frames, here = frames[near_enough], here[near_enough]
+        if self._instances is None:
+            self._instances = InstanceTable(self._all())
+        for batch, frames, rows, ahead in self._instances.seen(
+                view, links, len(links) - self._scenery.count, spec, casters):
             if batch.surface.clear and len(frames):
-                ahead = frames[:, 2, :3] @ batch.center + frames[:, 2, 3]
                 batch.ahead = float(ahead.mean())
                 far_first = np.argsort(ahead, kind="stable")
-                frames, here = frames[far_first], here[far_first]
-            batch.upload(frames, batch.rows[here])
+                frames, rows = frames[far_first], rows[far_first]
+            batch.upload(frames, rows)
 
     def _here(self, batch: Batch, links: np.ndarray) -> np.ndarray:
         """Which instances of a batch have a place."""
