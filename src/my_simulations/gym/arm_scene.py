@@ -33,14 +33,12 @@ class ArmState:
     Attributes:
         positions, rates: of the six axes, rad and rad/s, shape (6,).
         fingers: positions of both, m; 0 is open, 0.044 closed.
-        hand: pose of the hand in the world, as a row of `Readings.pose`.
         tool: position of `TOOL` in the world, m.
     """
 
     positions: np.ndarray
     rates: np.ndarray
     fingers: np.ndarray
-    hand: np.ndarray
     tool: np.ndarray
 
 
@@ -52,7 +50,7 @@ def read_arm(world: OpenWorld, links: Readings) -> ArmState:
     hand = links.pose["arm::hand"]
     tool = hand[:3] + rotate(tuple(hand[3:].tolist()), TOOL)
     return ArmState(joints.position.array[axes], joints.rate.array[axes],
-                    joints.position.array[fingers], hand, tool)
+                    joints.position.array[fingers], tool)
 
 
 def drive_axes(world: OpenWorld, rates: np.ndarray) -> None:

@@ -84,9 +84,7 @@ class PickAndPlace:
 
     def act(self, world: OpenWorld, action: Any) -> None:
         *speeds, grip = (float(value) for value in np.clip(action, -1.0, 1.0))
-        assert self._scene is not None, "observe is called before act"
-        arm_scene.drive_axes(world, _axis_rates(world, self._scene.arm.hand,
-                                                np.array(speeds) * FASTEST))
+        arm_scene.drive_axes(world, _axis_rates(world, np.array(speeds) * FASTEST))
         arm_scene.drive_fingers(world, grip > 0.0)
 
     def observe(self, world: OpenWorld) -> Any:
@@ -107,11 +105,12 @@ class PickAndPlace:
                          {"is_success": placed})
 
 
-def _axis_rates(world: OpenWorld, hand: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+def _axis_rates(world: OpenWorld, velocity: np.ndarray) -> np.ndarray:
     """Rates in rad/s at which the tool has a velocity (m/s) and the hand stays level.
 
-    The rates are reduced in proportion where one exceeds `arm_scene.FASTEST`. `hand` is its pose.
+    The rates are reduced in proportion where one exceeds `arm_scene.FASTEST`.
     """
+    hand = world.links().pose["arm::hand"]   # it may be elsewhere than observed: after a restore
     lean = -2.0 * np.sign(hand[6] or 1.0) * hand[3:6]  # to the orientation 0, for small angles
     jacobian = world.robot("arm").jacobian("hand", arm_scene.TOOL)[:, :6]
     wanted = np.concatenate((velocity, _UPRIGHT * lean))
