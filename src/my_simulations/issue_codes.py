@@ -38,11 +38,11 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("git-lfs-pointer", ERROR, "The file is a Git LFS pointer.", "Run `git lfs pull`."),
         ("xml-no-root", ERROR, "The document has no root element.", "Add <sdf> or <robot>."),
         ("xml-malformed", EITHER, "The document is not well-formed XML; repaired with a warning "
-         "where Gazebo's parser accepts it.", "Correct the given line."),
+         "if Gazebo's parser accepts it.", "Correct the given line."),
         ("xml-end-tag", WARNING, "An end tag closes nothing and is ignored.",
          "Correct its name, or remove it."),
         ("xml-truncated", ERROR, "The document ends inside an element.", "Restore the file."),
-        ("xml-encoding", WARNING, "The text is not in its encoding; see the message.",
+        ("xml-encoding", WARNING, "The text does not match its encoding; see the message.",
          "Save it as UTF-8."),
         ("xml-entities", ERROR, "The document declares entities, which are never expanded.",
          "Write the text instead of the entity."),
@@ -58,14 +58,14 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
          "of a column.", "Use the keys of doc/studies.md."),
         ("study-value", ERROR, "A value of a study file has the wrong type or is out of range.",
          "Write a value of the expected type."),
-        ("study-scenario", ERROR, "A scenario of a study is no roslaunch file.",
+        ("study-scenario", ERROR, "A scenario of a study is not a roslaunch file.",
          "Name a file whose first element is <launch>."),
         ("study-expression", ERROR, "A measurement of a study file is not understood.",
          "Use the signals and functions of doc/studies.md."),
     )),
     ("Assignments", (
         ("grade-key", ERROR, "An assignment file has an unknown key, lacks one, or two of its "
-         "checks have one name.", "Use the keys of doc/grading.md."),
+         "checks have the same name.", "Use the keys of doc/grading.md."),
         ("grade-value", ERROR, "A value of an assignment file has the wrong type or is out of "
          "range.", "Write a value of the expected type."),
         ("grade-type", ERROR, "An assignment file names a type of messages or services that does "
@@ -246,7 +246,7 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("home-path", WARNING, "A path in another machine's home folder; the model here is used.",
          "Write model://NAME."),
         ("image-not-found", EITHER, "The image was not found.", "Correct the path."),
-        ("terrain-blends", WARNING, "The number of <blend> does not fit that of <texture>.",
+        ("terrain-blends", WARNING, "The number of <blend> does not match that of <texture>.",
          "Write one <blend> fewer than textures."),
         ("image-unreadable", EITHER, "The image cannot be read.", "Use PNG or JPEG."),
         ("mesh-unreadable", EITHER, "The mesh file cannot be read.", "Use STL, OBJ, DAE or glTF."),
@@ -315,7 +315,7 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("group-member", ERROR, "A member of a group is not text.", "Quote the name."),
         ("unknown-package", ERROR, "The ROS package was not found.",
          "Source its workspace, or correct the name."),
-        ("object-file-outside", ERROR, "An object names a file outside of its package.",
+        ("object-file-outside", ERROR, "An object names a file outside its package.",
          "Name the package that contains the file."),
         ("object-file-missing", ERROR, "The object's file does not exist.",
          "Create the file, or correct `model`."),
@@ -323,12 +323,12 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
          "Check the permissions."),
         ("object-not-a-model", ERROR, "The document describes a light.",
          "Give a document with a model."),
-        ("object-list-missing", ERROR, "The world has no object list, and objects were asked for.",
+        ("object-list-missing", ERROR, "The world has no object list, but objects are required.",
          "Name a list with `object_list`."),
         ("object-empty", ERROR, "The object's file is empty.", "Give a file with content."),
         ("object-encoding", ERROR, "The object's file is not in the declared encoding.",
          "Save it as UTF-8."),
-        ("xacro-consent", ERROR, "A xacro file outside of the workspace, which may hold code.",
+        ("xacro-consent", ERROR, "A xacro file is outside the workspace and may run code.",
          "Read the file, then use `check_model --run-xacro`."),
         ("xacro-missing", ERROR, "xacro is not installed.", "Source the workspace."),
         ("xacro-failed", ERROR, "xacro reported an error.", "See the message."),
@@ -382,7 +382,7 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
          "Correct the plugin at the file and line of the message."),
         ("plugin-unknown", WARNING, "No plugin of that library is known; it has no effect.",
          "Export one in a package.xml, or name it in `~plugins` (see doc/plugins.md)."),
-        ("plugin-order", WARNING, "What a plugin asked of the engine was refused.",
+        ("plugin-order", WARNING, "The engine rejected a request of a plugin.",
          "See the message."),
         ("plugin-loading", WARNING, "Plugins of a model are not loaded yet.",
          "Wait; a plugin that does not return from `load` is switched off (see doc/plugins.md)."),
@@ -427,7 +427,7 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("world-file", NOTE, "The path of the world file that was opened.", "None."),
         ("log", EITHER, "The state log ended early.", "See the message."),
         ("recording", ERROR, "The log is still being recorded.", "Stop the recording first."),
-        ("replay", ERROR, "A page that shows a log was to edit the world.", "Close the log first."),
+        ("replay", ERROR, "A page that shows a log cannot edit the world.", "Close the log first."),
     )),
 )
 
@@ -441,9 +441,9 @@ CODES: Dict[str, IssueCode] = {entry.code: entry for _, entries in SECTIONS for 
 def markdown() -> str:
     """The page `doc/issue_codes.md`."""
     lines = ["# Issue codes", "",
-             "Every warning and error about a file carries a code: `check_model --json` prints it, "
-             "`check_model --explain CODE` explains it, the world editor shows it. "
-             "`error or warning`: an error where the element is needed, else a warning; "
+             "Every warning and error about a file has a code, which the world editor and",
+             "`check_model --json` show and `check_model --explain CODE` explains. The severity",
+             "`error or warning` means an error if the element is required, else a warning.",
              "`check_model --strict` turns warnings about invalid input into errors.", ""]
     for title, entries in SECTIONS:
         lines += [f"## {title}", "", "| code | severity | meaning | what to do |",

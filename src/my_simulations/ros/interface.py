@@ -153,7 +153,7 @@ TABLE: Tuple[Row, ...] = (
     _empty("pause_physics", "world.pause", "PausePhysics", ""),
     _empty("unpause_physics", "world.unpause", "UnpausePhysics", ""),
     _empty("reset_world", "world.reset_world", "ResetWorld",
-           "resets model poses; keeps sim time, and joint positions but of joints to the world"),
+           "resets model poses; keeps sim time and joint positions, except of joints to the world"),
     _empty("reset_simulation", "world.reset_simulation", "ResetSimulation",
            "resets model poses, joint positions and sim time"),
     Row("set_parameters", "dynamic_reconfigure/Reconfigure", SERVES, "reconfigure.set",
