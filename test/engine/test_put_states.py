@@ -87,7 +87,7 @@ def test_a_ball_joint_that_is_no_number_is_put_back_once(weightless):
     lab, nan = weightless, math.nan
     model = lab.load(SWING)
     body = next(one for one in lab.backend._bodies.values() if one.model_id == model)
-    pybullet.resetJointStateMultiDof(body.uid, body.balls[0].index, targetValue=(nan,) * 4,
+    pybullet.resetJointStateMultiDof(body.uid, body.ball_joints[0].index, targetValue=(nan,) * 4,
                                      targetVelocity=(nan,) * 3)
     lab.backend._readout.mark_changed(body)
     lab.steps(1)

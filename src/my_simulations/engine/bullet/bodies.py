@@ -90,7 +90,7 @@ class Axis:
 
 
 @dataclass
-class Ball:
+class BallJoint:
     """One ball joint: PyBullet's index and the links it connects (`parent` None: a fixed base).
 
     Bullet's joint quaternion is zero * a: `a` turns the child's principal axes into the parent's
@@ -110,11 +110,11 @@ class Body:
     Attributes:
         uid: PyBullet's number; `more` those of further static pieces.
         carriers: for a body of static pieces, the part of each with its collisions.
-        balls: its ball joints, which have no row.
+        ball_joints: have no row.
         parts: its links; `base` is the part whose index is BASE, None for a fixed base.
         moves: False for static and kinematic ones.
         rigid: joint-free, so it may sleep when `may_sleep`.
-        is_ball: its only shape is one sphere.
+        is_sphere: its only collision is a sphere.
         swept: so small that Bullet sweeps it along its way.
         lead_row: of its first part.
         radius: of a sphere about the centre of mass that holds the body (rigid ones), m.
@@ -133,10 +133,10 @@ class Body:
     axes: List[Axis] = field(default_factory=list)
     more: Tuple[int, ...] = ()
     carriers: Tuple[Part, ...] = ()
-    balls: Tuple[Ball, ...] = ()
+    ball_joints: Tuple[BallJoint, ...] = ()
     moves: bool = True
     rigid: bool = True
-    is_ball: bool = False
+    is_sphere: bool = False
     swept: bool = False
     may_sleep: bool = True
     radius: float = 0.0
@@ -266,9 +266,9 @@ def put_axis(body: Body, axis: Axis, position: float, rate: float = 0.0) -> None
         pybullet.resetJointState(body.uid, index, ratio * position, ratio * rate)
 
 
-def stop_balls(body: Body) -> None:
+def stop_ball_joints(body: Body) -> None:
     """Set the rates of the ball joints of a body to 0; they keep their orientations."""
-    for ball in body.balls:
+    for ball in body.ball_joints:
         turn = pybullet.getJointStateMultiDof(body.uid, ball.index)[0]
         pybullet.resetJointStateMultiDof(body.uid, ball.index, turn, ZERO3)
 

@@ -20,7 +20,7 @@ from ..surface_pieces import by_friction, by_surface, carried_by, in_pieces
 from . import collision_groups, surface_coefficients
 from .bodies import (
     Axis,
-    Ball,
+    BallJoint,
     Body,
     Part,
     mark_asleep,
@@ -169,7 +169,7 @@ class Builder:
                          for carrier in rigid.carriers) if rigid.static else ()
         body = Body(uids[0], self.model_id, [part], more=tuple(uids[1:]), carriers=carriers,
                     moves=not rigid.static, rigid=not self._articulated,
-                    is_ball=[type(c.geometry) for c in link.collisions] == [Sphere],
+                    is_sphere=[type(c.geometry) for c in link.collisions] == [Sphere],
                     may_sleep=self._may_sleep(link), shapes=taken)
         for uid, own in body.surfaces:
             set_dynamics(uid, BASE, surface_coefficients.of_link(own.link), masses.mass,
@@ -298,7 +298,7 @@ class Builder:
         parts: List[Part] = []
         pieces: List[Part] = []
         axes: List[Axis] = []
-        balls: List[Ball] = []
+        ball_joints: List[BallJoint] = []
         for n, (node, masses) in enumerate(zip(tree.plan.links, tree.masses)):
             index = n if tree.plan.fixed_base else n - 1
             link = carried_by(node, self._model)
@@ -317,12 +317,12 @@ class Builder:
                 row = self._axis_rows[row_name(node.joint.name, node.number)]
                 axes.append(Axis(row, index, node.joint.name, node.number))
             elif node.kind == "ball":
-                balls.append(self._ball(tree.plan, node, index, parts))
+                ball_joints.append(self._ball_joint(tree.plan, node, index, parts))
         if tree.plan.fixed_base:
             pybullet.changeDynamics(uid, BASE, linearDamping=0.0, angularDamping=0.0)
         self._store_mobility(uid, axes)
         return Body(uid, self.model_id, parts, axes, rigid=False, may_sleep=False,
-                    balls=tuple(balls), pieces=tuple(pieces))
+                    ball_joints=tuple(ball_joints), pieces=tuple(pieces))
 
     def _store_mobility(self, uid: int, axes: Sequence[Axis]) -> None:
         """Store the mobility of each axis of a tree, 1/kg or 1/(kg m^2); computed once."""
@@ -333,7 +333,8 @@ class Builder:
         for axis in axes:
             axis.ease = self._mobilities[axis.row]
 
-    def _ball(self, plan: BodyPlan, node: TreeLink, index: int, parts: Sequence[Part]) -> Ball:
+    def _ball_joint(self, plan: BodyPlan, node: TreeLink, index: int,
+                    parts: Sequence[Part]) -> BallJoint:
         child, parent, above = parts[-1], None, IDENTITY
         if node.parent >= 0:
             over = plan.links[node.parent].index
@@ -341,7 +342,7 @@ class Builder:
             parent = next(part for part in parts if part.row == row)
             above = parent.com_pose(self._model.links[over].pose)
         mine = child.com_pose(self._model.links[node.index].pose)
-        return Ball(index, child, parent, multiply(conjugate(mine.orientation),
+        return BallJoint(index, child, parent, multiply(conjugate(mine.orientation),
                                                    above.orientation))
 
     def remove(self, built: Sequence[Body]) -> None:

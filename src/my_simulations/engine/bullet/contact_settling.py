@@ -221,7 +221,7 @@ class ContactSettling(StepHelper):
         if not contacts:
             tree.looks, tree.clear = 0, _CLEAR if body.base is None else 0
             return False
-        alone = not (body.ties or body.balls or body.uid in self._loaded()
+        alone = not (body.ties or body.ball_joints or body.uid in self._loaded()
                      or any(contact[OTHER_BODY] in self._moving for contact in contacts))
         if held is not None:
             if alone and speed < _PUSHED and fastest < _PUSHED_JOINT:

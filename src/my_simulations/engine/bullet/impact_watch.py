@@ -162,8 +162,8 @@ class ImpactWatch(StepHelper):
         self._moving.add(body.uid)
         if body.rigid:
             # `radius` reaches the corners of the bounding box; that of a ball is smaller.
-            self._radii[body.uid] = body.radius * (3.0 ** -0.5 if body.is_ball else 1.0)
-        if body.base is None or body.swept and body.is_ball:
+            self._radii[body.uid] = body.radius * (3.0 ** -0.5 if body.is_sphere else 1.0)
+        if body.base is None or body.swept and body.is_sphere:
             return
         self._watched[body.uid] = _Watched(body)
         self._agenda.plan(body.uid, 0)
@@ -228,7 +228,7 @@ class ImpactWatch(StepHelper):
         if speed + now.fall < fast:
             deep = inf
         # Bullet finds all points of two boxes by itself.
-        wait = _SELDOM if body.is_ball or not self._uneven else (
+        wait = _SELDOM if body.is_sphere or not self._uneven else (
             self._steps_on_ground(watched, here, speed, now))
         if wait and deep == inf:
             gains = max(now.ahead, int((fast - speed) / max(now.fall, 1e-9)))

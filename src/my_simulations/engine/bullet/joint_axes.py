@@ -88,9 +88,9 @@ def _wheel_dampers(body: Body, found: List[Tuple[Axis, JointAxis]],
 def _free(body: Body) -> None:
     """Switch the motors off that createMultiBody leaves on every axis, also those without a row."""
     with_row = {axis.index for axis in body.axes}
-    balls = {ball.index for ball in body.balls}
+    ball_joints = {ball.index for ball in body.ball_joints}
     for index in range(pybullet.getNumJoints(body.uid)):
-        if index in balls:
+        if index in ball_joints:
             pybullet.setJointMotorControlMultiDof(
                 body.uid, index, pybullet.POSITION_CONTROL, targetPosition=(0.0, 0.0, 0.0, 1.0),
                 positionGain=0.0, velocityGain=0.0, force=(0.0, 0.0, 0.0))

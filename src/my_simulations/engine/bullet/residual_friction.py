@@ -97,7 +97,7 @@ class ResidualFriction(StepHelper):
             self._trees.add(body.uid)
             return
         self._bodies[body.uid] = body
-        if not body.is_ball:
+        if not body.is_sphere:
             self._new.add(body.uid)
             self._agenda.plan(body.uid, 0)
 
@@ -109,7 +109,7 @@ class ResidualFriction(StepHelper):
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Check a body in each step after a command changed its pose or velocity."""
         uid = body.uid
-        if uid in self._bodies and not body.is_ball:
+        if uid in self._bodies and not body.is_sphere:
             self._fast[uid], self._each_step[uid] = None, 1
             self._new.add(uid)
             self._agenda.plan(uid, 0)

@@ -67,8 +67,8 @@ def restore(entry: Entry, state: ModelState) -> None:
             bodies.place(body, link.pose)
         for axis in body.axes:
             bodies.put_axis(body, axis, *rates[row_name(axis.name, axis.number)])
-        for ball in body.balls:
-            set_ball(body, ball, entry.pose, lambda row: state.links[row - entry.first_row])
+        for ball in body.ball_joints:
+            set_ball_joint(body, ball, entry.pose, lambda row: state.links[row - entry.first_row])
         if body.base is None:
             _restore_base(body, link.pose)
         elif body.moves:
@@ -86,7 +86,7 @@ def _restore_base(body: Body, link_pose: Pose) -> None:
                                                  target.orientation)
 
 
-def set_ball(body: Body, ball: bodies.Ball, base: Pose,
+def set_ball_joint(body: Body, ball: bodies.BallJoint, base: Pose,
              state_of: Callable[[int], LinkState]) -> None:
     """Give a ball joint the angles and rates of the links that it connects.
 

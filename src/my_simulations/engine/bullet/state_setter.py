@@ -38,7 +38,7 @@ from .body_events import BodyEvent
 from .link_states import place
 from .row_reader import RowReader
 from .state_readout import StateReadout
-from .state_restore import Entry, set_ball
+from .state_restore import Entry, set_ball_joint
 from .wake_up import WakeUp
 
 _ROW = struct.Struct(f"={LINK_WIDTH}d")
@@ -137,9 +137,9 @@ class StateSetter:
             bodies.launch(body, last.pose, STILL)
         for axis in body.axes:
             bodies.put_axis(body, axis, float(self._readout.joints[axis.row, 0]))
-        for ball in body.balls:
+        for ball in body.ball_joints:
             base = Pose(*pybullet.getBasePositionAndOrientation(body.uid))
-            set_ball(body, ball, base, lambda row: LinkState(self.link_state(row).pose))
+            set_ball_joint(body, ball, base, lambda row: LinkState(self.link_state(row).pose))
         self._notify(BodyEvent.STATE_REPAIRED, body)
 
     def _in_world(self, pose: Pose, twist: Optional[Twist],
@@ -180,7 +180,7 @@ class StateSetter:
             put_axis(body, axis, pybullet.getJointState(body.uid, axis.index)[0],
                      rates.get(axis.index, 0.0))
         if twist is not None:
-            bodies.stop_balls(body)
+            bodies.stop_ball_joints(body)
         if body.moves and body.base is not None:
             bodies.launch(body, target, _carried(lead, target, wanted.position, twist))
         self._notify(BodyEvent.STATE_SET, body)
