@@ -249,7 +249,7 @@ def remove(body: Body) -> None:
         pybullet.removeBody(uid)
 
 
-def place(body: Body, link_pose: Pose) -> None:
+def set_pose(body: Body, link_pose: Pose) -> None:
     """Set the pose of a body: its first part's link frame gets the world pose `link_pose`."""
     at = body.parts[0].com_pose(link_pose)
     pybullet.resetBasePositionAndOrientation(body.uid, at.position, at.orientation)
@@ -258,7 +258,7 @@ def place(body: Body, link_pose: Pose) -> None:
         pybullet.resetBasePositionAndOrientation(uid, stand.position, stand.orientation)
 
 
-def put_axis(body: Body, axis: Axis, position: float, rate: float = 0.0) -> None:
+def set_axis_state(body: Body, axis: Axis, position: float, rate: float = 0.0) -> None:
     """Set the position and rate of a joint axis, of both halves of a screw."""
     pybullet.resetJointState(body.uid, axis.index, position, rate)
     if axis.follower is not None:
@@ -278,8 +278,8 @@ def piece_pose(at: Pose, recipe: Recipe) -> Pose:
     return at if recipe.frame is IDENTITY else compose(at, recipe.frame)
 
 
-def launch(body: Body, link_pose: Pose, twist: Twist) -> None:
-    """Set the velocity of the base to `twist` (at its link origin, world axes)."""
+def set_base_twist(body: Body, link_pose: Pose, twist: Twist) -> None:
+    """Set the velocity of the base; `twist` is that of its link origin, in world axes."""
     com = body.parts[0].com_twist(link_pose, twist)
     pybullet.resetBaseVelocity(body.uid, com.linear, com.angular)
 

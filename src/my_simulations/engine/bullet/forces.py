@@ -31,7 +31,7 @@ from .body_events import BodyEvent
 from .implicit_axes import ImplicitAxes, Motor
 from .joint_pid import MOST_EFFORT, PidController
 from .joint_servos import JointServos
-from .link_states import place
+from .link_states import read_com_pose
 from .step_helper import FAR, StepHelper
 
 _NOBODY: FrozenSet[int] = frozenset()
@@ -198,7 +198,7 @@ class Forces(StepHelper):
             if isinstance(wrench, TimedWrench) and wrench.row == row:
                 body, part = self._parts[row]
                 one, other = self._by_law.get(wrench.force_id) or _in_world(
-                    wrench, part, place(body.uid, part.index)[1])
+                    wrench, part, read_com_pose(body.uid, part.index)[1])
                 force, torque = add(force, one), add(torque, other)
         return force, torque
 
@@ -234,7 +234,7 @@ class Forces(StepHelper):
         if efforts:
             self._apply_efforts(efforts)
         for body, part in self._weightless.values():
-            at = place(body.uid, part.index)[0]
+            at = read_com_pose(body.uid, part.index)[0]
             pybullet.applyExternalForce(body.uid, part.index, scale(gravity, -part.mass), at,
                                         pybullet.WORLD_FRAME)
 
@@ -313,7 +313,7 @@ class Forces(StepHelper):
         body, part = self._parts[wrench.row]
         if not body.moves:
             return
-        at, turn = place(body.uid, part.index)
+        at, turn = read_com_pose(body.uid, part.index)
         force, torque = _in_world(wrench, part, turn) if wrench.law is None \
             else self._computed(wrench, wrench.law, part.link_from_com.position)
         if force != ZERO3:

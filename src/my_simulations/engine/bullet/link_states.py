@@ -61,8 +61,8 @@ def link_motions(body: Body) -> Dict[int, Motion]:
     return found
 
 
-def place(uid: int, index: int) -> Tuple[Vec3, Quat]:
-    """Return the pose of one link of a body, the base or another one, as in `motion`."""
+def read_com_pose(uid: int, index: int) -> Tuple[Vec3, Quat]:
+    """Return the pose of `motion`: of the centre of mass, along the principal axes."""
     if index == BASE:
         position, orientation = pybullet.getBasePositionAndOrientation(uid)
     else:

@@ -8,7 +8,7 @@ import pybullet
 from ...geometry import STILL, Pose, Vec3, norm, subtract
 from ..body_plan import BASE
 from ..run_state import RestPose
-from .bodies import Body, put_axis, stop_ball_joints
+from .bodies import Body, set_axis_state, stop_ball_joints
 from .body_events import COMMANDED, BodyEvent
 from .step_helper import FAR, StepHelper
 
@@ -30,7 +30,7 @@ def put_at_rest(body: Body, place: RestPose) -> None:
         pybullet.resetBasePositionAndOrientation(body.uid, *place.base)
         pybullet.resetBaseVelocity(body.uid, *STILL)
     for axis, position in zip(body.axes, place.positions):
-        put_axis(body, axis, position)
+        set_axis_state(body, axis, position)
     stop_ball_joints(body)
 
 

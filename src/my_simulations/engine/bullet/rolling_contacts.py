@@ -44,7 +44,7 @@ from .bodies import Body, Part
 from .body_events import ACTUATED, COMMANDED, BodyEvent
 from .contact_points import DISTANCE, NORMAL, OTHER_BODY, LinkKey
 from .extra_surfaces import SOFT
-from .link_states import place
+from .link_states import read_com_pose
 from .step_helper import FAR, StepHelper, next_multiple
 
 EVERY = 8
@@ -255,7 +255,7 @@ class RollingContacts(StepHelper):
         contacts = pybullet.getContactPoints(bodyA=uid, linkIndexA=index)
         depth, least, most, on_moving, seamed = 0.0, 1.0, 0.0, False, False
         # Without contacts the pose is not needed.
-        at = Pose(*place(uid, index)) if contacts else IDENTITY
+        at = Pose(*read_com_pose(uid, index)) if contacts else IDENTITY
         x, y, z = rotate(at.orientation, roller.axis)
         for contact in contacts:
             a, b, c = contact[NORMAL]

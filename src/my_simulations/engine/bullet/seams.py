@@ -36,7 +36,7 @@ from . import collision_groups, rolling_contacts
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
 from .contact_points import DISTANCE, LOAD, NORMAL, OTHER_BODY, PLACE, ContactPoint, LinkKey
-from .link_states import place
+from .link_states import read_com_pose
 from .rolling_contacts import RollingContacts, axis_of
 from .step_helper import FAR, StepHelper, next_multiple
 from .world_parameters import WorldParameters
@@ -95,7 +95,7 @@ class SeamContacts(StepHelper):
                 pybullet.applyExternalTorque(uid, index, push.torque, pybullet.WORLD_FRAME)
         self._pushes.clear()
         for key, axis in self._rolling.on_seams.items():
-            centre, turn = place(*key)
+            centre, turn = read_com_pose(*key)
             self._at[key] = centre, rotate(turn, axis)
         if self._at:
             self._parameters.request_spacing(_APART)

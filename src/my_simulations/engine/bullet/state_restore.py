@@ -15,7 +15,7 @@ from . import bodies
 from .bodies import Body
 from .body_builder import Builder
 from .joint_constraints import Constraints
-from .link_states import place
+from .link_states import read_com_pose
 from .state_readout import StateReadout
 
 
@@ -64,22 +64,22 @@ def restore(entry: Entry, state: ModelState) -> None:
     for body in entry.bodies:
         link = state.links[body.parts[0].row - entry.first_row]
         if body.base is not None:
-            bodies.place(body, link.pose)
+            bodies.set_pose(body, link.pose)
         for axis in body.axes:
-            bodies.put_axis(body, axis, *rates[row_name(axis.name, axis.number)])
+            bodies.set_axis_state(body, axis, *rates[row_name(axis.name, axis.number)])
         for ball in body.ball_joints:
             set_ball_joint(body, ball, entry.pose, lambda row: state.links[row - entry.first_row])
         if body.base is None:
             _restore_base(body, link.pose)
         elif body.moves:
-            bodies.launch(body, link.pose, link.twist)
+            bodies.set_base_twist(body, link.pose, link.twist)
 
 
 def _restore_base(body: Body, link_pose: Pose) -> None:
     """Put the fixed base where it must be for the first link to have its pose."""
     base = Pose(*pybullet.getBasePositionAndOrientation(body.uid))
     part = body.parts[0]
-    base_from_com = compose(inverse(base), Pose(*place(body.uid, part.index)))
+    base_from_com = compose(inverse(base), Pose(*read_com_pose(body.uid, part.index)))
     target = compose(part.com_pose(link_pose), inverse(base_from_com))
     if not _nearly(base, target):
         pybullet.resetBasePositionAndOrientation(body.uid, target.position,

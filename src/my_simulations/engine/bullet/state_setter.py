@@ -33,9 +33,9 @@ from ..body_plan import BASE
 from ..commands import Frame, LinkState, SetJoints, SetLinkState, SetModelState
 from ..ring import LINK_WIDTH
 from . import bodies
-from .bodies import Axis, Body, Part, put_axis
+from .bodies import Axis, Body, Part, set_axis_state
 from .body_events import BodyEvent
-from .link_states import place
+from .link_states import read_com_pose
 from .row_reader import RowReader
 from .state_readout import StateReadout
 from .state_restore import Entry, set_ball_joint
@@ -126,17 +126,17 @@ class StateSetter:
                 continue
             body, axis = self._axes[row]
             self._waker.around([body])
-            bodies.put_axis(body, axis, position, rate)
+            bodies.set_axis_state(body, axis, position, rate)
             self._notify(BodyEvent.STATE_SET, body)
 
     def put_back(self, body: Body) -> None:
         """Put a body whose state is no number back where it last was one, at rest."""
         last = self.link_state(body.parts[0].row)
         if body.base is not None:
-            bodies.place(body, last.pose)
-            bodies.launch(body, last.pose, STILL)
+            bodies.set_pose(body, last.pose)
+            bodies.set_base_twist(body, last.pose, STILL)
         for axis in body.axes:
-            bodies.put_axis(body, axis, float(self._readout.joints[axis.row, 0]))
+            bodies.set_axis_state(body, axis, float(self._readout.joints[axis.row, 0]))
         for ball in body.ball_joints:
             base = Pose(*pybullet.getBasePositionAndOrientation(body.uid))
             set_ball_joint(body, ball, base, lambda row: LinkState(self.link_state(row).pose))
@@ -173,16 +173,16 @@ class StateSetter:
         else:
             target = wanted if row == body.parts[0].row else compose(
                 wanted, compose(inverse(current), lead.pose))
-            bodies.place(body, target)
+            bodies.set_pose(body, target)
         if twist is not None:
             rates = _first_rates(body, twist) if body.base is None else {}
         for axis in body.axes:
-            put_axis(body, axis, pybullet.getJointState(body.uid, axis.index)[0],
+            set_axis_state(body, axis, pybullet.getJointState(body.uid, axis.index)[0],
                      rates.get(axis.index, 0.0))
         if twist is not None:
             bodies.stop_ball_joints(body)
         if body.moves and body.base is not None:
-            bodies.launch(body, target, _carried(lead, target, wanted.position, twist))
+            bodies.set_base_twist(body, target, _carried(lead, target, wanted.position, twist))
         self._notify(BodyEvent.STATE_SET, body)
 
 
@@ -233,7 +233,7 @@ def _along(body: Body, index: int, moved: Twist) -> Tuple[float, bool]:
     """Return the motion of a joint for that of its link, rad or m, or rates; whether it turns."""
     info = pybullet.getJointInfo(body.uid, index)
     turns: bool = info[_TYPE] == pybullet.JOINT_REVOLUTE
-    direction = rotate(place(body.uid, index)[1], info[_AXIS])
+    direction = rotate(read_com_pose(body.uid, index)[1], info[_AXIS])
     return dot(direction, moved.angular if turns else moved.linear), turns
 
 
@@ -245,7 +245,7 @@ def _move_by_joints(body: Body, way: Pose) -> bool:
     """
     done: List[Tuple[Axis, float]] = []
     for index, axis in _first_joints(body).items():
-        before = Pose(*place(body.uid, index))
+        before = Pose(*read_com_pose(body.uid, index))
         after = compose(way, before)
         if _is_near(before, after, _SAME if axis is not None else _NEAR):
             continue
@@ -258,12 +258,12 @@ def _move_by_joints(body: Body, way: Pose) -> bool:
                 rotation_vector(multiply(after.orientation, conjugate(before.orientation)))))
             position = start + travel
             least = math.remainder(position, 2.0 * math.pi)   # as Gazebo has angles
-            put_axis(body, axis, least if turns and axis.lower <= least <= axis.upper
+            set_axis_state(body, axis, least if turns and axis.lower <= least <= axis.upper
                      else position)
-            if _is_near(Pose(*place(body.uid, index)), after, _NEAR):
+            if _is_near(Pose(*read_com_pose(body.uid, index)), after, _NEAR):
                 continue
         for other, old in done:
-            put_axis(body, other, old)
+            set_axis_state(body, other, old)
         return False
     return True
 

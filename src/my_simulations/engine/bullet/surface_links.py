@@ -16,7 +16,7 @@ from .contact_points import NORMAL, PLACE, ContactPoint, LinkKey
 from .contact_slip import direction_across, load_centre
 from .edge_loads import axle_of
 from .extra_surfaces import first_direction
-from .link_states import AT_REST, Motion, place
+from .link_states import AT_REST, Motion, read_com_pose
 from .mass_matrix import MassMatrix
 from .surface_coefficients import is_direction_dependent
 
@@ -97,7 +97,8 @@ class SurfaceLink:
         own = self.first or self.axle
         if own is None:
             return None
-        turn = moves.orientation if moves is not AT_REST else place(self.uid, self.part.index)[1]
+        turn = (moves.orientation if moves is not AT_REST
+                else read_com_pose(self.uid, self.part.index)[1])
         turned = rotate(turn, own)
         flat = subtract(turned, scale(normal, dot(turned, normal)))
         size = norm(flat)
