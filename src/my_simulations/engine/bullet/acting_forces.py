@@ -19,8 +19,8 @@ from .contact_points import (
     NORMAL,
     OTHER_BODY,
     OTHER_LINK,
-    OTHER_PLACE,
-    PLACE,
+    OTHER_POINT,
+    POINT,
     friction_force,
 )
 from .link_states import Motion
@@ -49,10 +49,10 @@ def note_contacts(found: Acting, body: Body) -> None:
             continue
         force = add(scale(contact[NORMAL], contact[LOAD]), friction_force(contact))
         if contact[BODY] == body.uid:
-            note(found, owners.get(contact[LINK], contact[LINK]), force, contact[PLACE])
+            note(found, owners.get(contact[LINK], contact[LINK]), force, contact[POINT])
         if contact[OTHER_BODY] == body.uid:
             note(found, owners.get(contact[OTHER_LINK], contact[OTHER_LINK]), scale(force, -1.0),
-                 contact[OTHER_PLACE])
+                 contact[OTHER_POINT])
 
 
 def note_constraints(found: Acting, body: Body, links: Mapping[int, Motion]) -> None:

@@ -17,7 +17,7 @@ LinkKey = Tuple[int, int]
 
 BODY, OTHER_BODY, LINK, OTHER_LINK = 1, 2, 3, 4
 """PyBullet's numbers; in a query for one body, `BODY` is that body."""
-PLACE, OTHER_PLACE = 5, 6
+POINT, OTHER_POINT = 5, 6
 """The points on the surfaces of the two bodies, m."""
 NORMAL = 7
 """From the other body to the body, of length 1."""

@@ -17,8 +17,8 @@ from .contact_points import (
     NORMAL,
     OTHER_BODY,
     OTHER_LINK,
-    OTHER_PLACE,
-    PLACE,
+    OTHER_POINT,
+    POINT,
     friction_force,
 )
 from .edge_loads import NEAR
@@ -35,8 +35,8 @@ def read_contacts(bodies: Dict[int, Body], limit: int,
     found: List[Contact] = []
     for contact in pybullet.getContactPoints():
         rows = []
-        places = ((contact[BODY], contact[LINK], contact[PLACE]),
-                  (contact[OTHER_BODY], contact[OTHER_LINK], contact[OTHER_PLACE]))
+        places = ((contact[BODY], contact[LINK], contact[POINT]),
+                  (contact[OTHER_BODY], contact[OTHER_LINK], contact[OTHER_POINT]))
         for uid, index, _ in places:
             body = bodies.get(uid)
             rows += [] if body is None else [
@@ -54,7 +54,7 @@ def read_contacts(bodies: Dict[int, Body], limit: int,
             friction = friction_force(contact)
             for each, sign in zip(acting, (1.0, -1.0)):
                 friction = friction if each is None else add(friction, scale(each.force, sign))
-            found.append(Contact(rows[0], rows[1], contact[OTHER_PLACE], contact[NORMAL],
+            found.append(Contact(rows[0], rows[1], contact[OTHER_POINT], contact[NORMAL],
                                  -contact[DISTANCE], force, friction))
         if len(found) >= limit:
             break

@@ -5,7 +5,7 @@ from math import hypot, sqrt
 from typing import List, NamedTuple, Sequence, Tuple
 
 from ...geometry import Vec3, dot, scale, subtract
-from .contact_points import NORMAL, PLACE, ContactPoint
+from .contact_points import NORMAL, POINT, ContactPoint
 from .link_states import AT_REST, Motion
 
 _MOST_ROUNDS = 20
@@ -19,7 +19,7 @@ def slips_along(contacts: Sequence[ContactPoint], axes: Tuple[Vec3, Vec3], mine:
     (a, b, c), (d, e, f) = axes
     found = []
     for contact in contacts:
-        x, y, z = contact[PLACE]
+        x, y, z = contact[POINT]
         if theirs is not AT_REST:
             i, j, k = subtract((0.0, 0.0, 0.0), theirs.velocity_at((x, y, z)))
         else:
@@ -78,10 +78,10 @@ def mean_velocity(moves: Motion, contacts: Sequence[ContactPoint], loads: Sequen
 def load_centre(contacts: Sequence[ContactPoint], loads: Sequence[float]) -> Vec3:
     """Return the mean of contact points weighted by load, m; world axes."""
     if len(loads) == 1:
-        return contacts[0][PLACE]
+        return contacts[0][POINT]
     x = y = z = 0.0
     for contact, load in zip(contacts, loads):
-        i, j, k = contact[PLACE]
+        i, j, k = contact[POINT]
         x, y, z = x + load * i, y + load * j, z + load * k
     total = sum(loads)
     return x / total, y / total, z / total
@@ -150,7 +150,7 @@ def isotropic(contacts: Sequence[ContactPoint], loads: Sequence[float], mine: Mo
     mx = my = mz = 0.0
     forces: List[Vec3] = []
     for contact, load in zip(contacts, loads):
-        (x, y, z), (a, b, c) = contact[PLACE], contact[NORMAL]
+        (x, y, z), (a, b, c) = contact[POINT], contact[NORMAL]
         x, y, z = x - cx, y - cy, z - cz
         i, j, k = u + q * z - r * y, v + r * x - p * z, w + p * y - q * x
         away = i * a + j * b + k * c

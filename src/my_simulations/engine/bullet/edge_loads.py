@@ -15,7 +15,7 @@ from ...description.model import Link
 from ...description.shapes import Cylinder
 from ...geometry import Vec3, conjugate, cross, dot, norm, rotate, scale
 from .bodies import Part
-from .contact_points import DISTANCE, LOAD, NORMAL, PLACE, ContactPoint
+from .contact_points import DISTANCE, LOAD, NORMAL, POINT, ContactPoint
 from .link_states import Motion
 
 Loads = Tuple[List[ContactPoint], List[float]]
@@ -78,7 +78,7 @@ def _edges(wheels: Sequence[Wheel]) -> Optional[_Edges]:
     along = cross(normal, (0.0, 0.0, 1.0) if abs(nz) < 0.9 else (0.0, 1.0, 0.0))
     tx, ty, tz = along = scale(along, 1.0 / norm(along))
     sx, sy, sz = cross(normal, along)
-    height = dot(first[PLACE], normal)
+    height = dot(first[POINT], normal)
     edges: List[Tuple[int, List[ContactPoint]]] = []
     xs: List[float] = []
     ys: List[float] = []
@@ -94,7 +94,7 @@ def _edges(wheels: Sequence[Wheel]) -> Optional[_Edges]:
         for contact in contacts:
             if contact[DISTANCE] >= NEAR:
                 continue
-            (x, y, z), (p, q, r), load = contact[PLACE], contact[NORMAL], contact[LOAD]
+            (x, y, z), (p, q, r), load = contact[POINT], contact[NORMAL], contact[LOAD]
             if (abs(x * nx + y * ny + z * nz - height) > _LEVEL
                     or p * nx + q * ny + r * nz < _ALIKE):
                 return None

@@ -35,7 +35,7 @@ from .agenda import Agenda
 from .approach import Motions, extent, flies, tumbles
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
-from .contact_points import DISTANCE, LOAD, NORMAL, OTHER_PLACE, PLACE
+from .contact_points import DISTANCE, LOAD, NORMAL, OTHER_POINT, POINT
 from .flat_landings import flat_axes, tilt_beyond_flat
 from .landing_points import Filters, LandingPoints, Touch, extents_across
 from .link_states import AT_REST, Motion
@@ -328,7 +328,7 @@ class ImpactWatch(StepHelper):
             return step + ahead, step + ahead
         nearest = min(points, key=itemgetter(DISTANCE))
         gap: float = nearest[DISTANCE]
-        at: Vec3 = nearest[PLACE]
+        at: Vec3 = nearest[POINT]
         normal: Vec3 = nearest[NORMAL]
         there_in = dot(there.velocity_at(at), normal)
         speed_in = there_in - dot(here.velocity_at(at), normal)
@@ -353,7 +353,7 @@ class ImpactWatch(StepHelper):
             steps = turning
         else:
             steps = 1.0
-            path.touches.append(Touch(uid, other, gap, nearest[OTHER_PLACE], normal, here,
+            path.touches.append(Touch(uid, other, gap, nearest[OTHER_POINT], normal, here,
                                       *extents_across(path.low, path.high, normal)))
         return step + max(1, int(steps)), step + int(min(ahead, free))
 

@@ -8,7 +8,7 @@ import pybullet
 
 from ...geometry import Quat, Vec3, add, cross, dot, multiply, norm, rotate, scale, subtract
 from . import collision_groups
-from .contact_points import DISTANCE, PLACE
+from .contact_points import DISTANCE, POINT
 from .link_states import Motion
 
 MOST_TILT = 0.15
@@ -103,7 +103,7 @@ class LandingPoints:
                 _tilt(touch, angle + _QUARTER * number, tilt, raised)
             pybullet.performCollisionDetection()
             for trial, places in zip(trials, found):
-                places += [point[PLACE] for point in pybullet.getContactPoints(trial.touch.uid)]
+                places += [point[POINT] for point in pybullet.getContactPoints(trial.touch.uid)]
         for touch, angle, _, _ in trials:
             sunk = max(0.0, touch.gap + _HINT * touch.breadth)  # else points would not touch
             _tilt(touch, angle - _QUARTER, _HINT, -sunk)
@@ -163,7 +163,7 @@ def _leaning(trials: List[_Trial]) -> List[_Trial]:
 def _stands(touch: Touch) -> bool:
     """Whether the centre of mass is above the polygon of the contact points."""
     side, fore = _sides(touch.normal)
-    levers = [subtract(point[PLACE], touch.motion.position)
+    levers = [subtract(point[POINT], touch.motion.position)
               for point in pybullet.getContactPoints(touch.uid) if point[DISTANCE] <= 0.0]
     angles = sorted(atan2(dot(lever, fore), dot(lever, side)) for lever in levers)
     around = [*angles[1:], angles[0] + 2.0 * pi] if angles else []

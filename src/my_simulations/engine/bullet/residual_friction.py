@@ -36,8 +36,8 @@ from .contact_points import (
     LOAD,
     OTHER_BODY,
     OTHER_LINK,
-    OTHER_PLACE,
-    PLACE,
+    OTHER_POINT,
+    POINT,
     ContactPoint,
     LinkKey,
     friction_force,
@@ -227,14 +227,14 @@ class ResidualFriction(StepHelper):
         along: Vec3 = contact[DIRECTION]
         ours = motion(uid, BASE)
         theirs = motion(other, BASE) if other in self._bodies else None
-        velocity = ours.velocity_at(contact[PLACE])
+        velocity = ours.velocity_at(contact[POINT])
         if theirs is not None:
-            velocity = subtract(velocity, theirs.velocity_at(contact[OTHER_PLACE]))
+            velocity = subtract(velocity, theirs.velocity_at(contact[OTHER_POINT]))
         sign = dt if (dot(velocity, along) > 0.0) == (contact[FRICTION] > 0.0) else -dt
         impulse = scale(friction_force(contact), sign)
-        _push(self._bodies[uid], ours, impulse, contact[PLACE])
+        _push(self._bodies[uid], ours, impulse, contact[POINT])
         if theirs is not None:
-            _push(self._bodies[other], theirs, scale(impulse, -1.0), contact[OTHER_PLACE])
+            _push(self._bodies[other], theirs, scale(impulse, -1.0), contact[OTHER_POINT])
 
 
 def _push(body: Body, before: Motion, impulse: Vec3, at: Vec3) -> None:

@@ -35,7 +35,7 @@ from ..body_plan import BASE
 from . import collision_groups, rolling_contacts
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
-from .contact_points import DISTANCE, LOAD, NORMAL, OTHER_BODY, PLACE, ContactPoint, LinkKey
+from .contact_points import DISTANCE, LOAD, NORMAL, OTHER_BODY, POINT, ContactPoint, LinkKey
 from .link_states import read_com_pose
 from .rolling_contacts import RollingContacts, axis_of
 from .step_helper import FAR, StepHelper, next_multiple
@@ -108,7 +108,7 @@ class SeamContacts(StepHelper):
             ends: Dict[bool, List[ContactPoint]] = {}
             for contact in pybullet.getContactPoints(bodyA=key[0], linkIndexA=key[1]):
                 if contact[DISTANCE] <= 0.0 and self._rolling.is_seamed(contact[OTHER_BODY]):
-                    end = dot(subtract(contact[PLACE], centre), axis) > 0.0
+                    end = dot(subtract(contact[POINT], centre), axis) > 0.0
                     ends.setdefault(end, []).append(contact)
             pushes = [push for contacts in ends.values() for push in _pushes(
                 contacts, centre, axis)]
@@ -120,7 +120,7 @@ class SeamContacts(StepHelper):
 def _pushes(contacts: List[ContactPoint], centre: Vec3, axis: Vec3) -> List[_Push]:
     """Return the compensation for edge forces at one end of a cylinder: none or one push."""
     deepest = min(contacts, key=lambda contact: contact[DISTANCE])
-    lever = subtract(deepest[PLACE], centre)
+    lever = subtract(deepest[POINT], centre)
     along = dot(lever, axis)
     radius = norm(_across(lever, axis))
     normal = _across(deepest[NORMAL], axis)
@@ -128,11 +128,11 @@ def _pushes(contacts: List[ContactPoint], centre: Vec3, axis: Vec3) -> List[_Pus
     force, torque = ZERO3, 0.0
     for contact in contacts:
         own, load = _across(contact[NORMAL], axis), contact[LOAD]
-        way = norm(_across(subtract(contact[PLACE], deepest[PLACE]), axis))
+        way = norm(_across(subtract(contact[POINT], deepest[POINT]), axis))
         if load <= 0.0 or way > reach or dot(own, normal) < _SAME:
             continue
         force = add(force, scale(subtract(normal, own), load))
-        torque -= load * dot(axis, cross(subtract(contact[PLACE], centre), own))
+        torque -= load * dot(axis, cross(subtract(contact[POINT], centre), own))
     if force == ZERO3 and torque == 0.0:
         return []
     return [_Push(force, add(centre, scale(axis, along)), scale(axis, torque))]

@@ -12,7 +12,7 @@ from ...description.link_surface import dominant_collision
 from ...description.shapes import Cylinder, Surface
 from ...geometry import Vec3, add, conjugate, cross, dot, norm, rotate, scale, subtract
 from .bodies import Axis, Body, Part
-from .contact_points import NORMAL, PLACE, ContactPoint, LinkKey
+from .contact_points import NORMAL, POINT, ContactPoint, LinkKey
 from .contact_slip import direction_across, load_centre
 from .edge_loads import axle_of
 from .extra_surfaces import first_direction
@@ -108,7 +108,7 @@ class SurfaceLink:
         """Return an upper bound of its acceleration per force at a contact, 1/kg."""
         if not self.body.moves or self.part.mass <= 0.0:
             return 0.0
-        arm = max(norm(subtract(contact[PLACE], moves.position)) for contact in contacts)
+        arm = max(norm(subtract(contact[POINT], moves.position)) for contact in contacts)
         return 1.0 / self.part.mass + arm * arm / max(_LEAST_MOMENT, min(self.part.moments))
 
 
@@ -134,7 +134,7 @@ def contact_mobility(link: SurfaceLink, contact: ContactPoint, holds: Callable[[
     """
     matrix = MassMatrix(link.uid)
     masses, index = matrix.now(), link.part.index
-    at, normal = np.array(contact[PLACE]), np.array(contact[NORMAL])
+    at, normal = np.array(contact[POINT]), np.array(contact[NORMAL])
     along = direction_across(contact[NORMAL])
     surface = np.array((along, cross(contact[NORMAL], along)))
     base = 0 if link.body.base is None else 6

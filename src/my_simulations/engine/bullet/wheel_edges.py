@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import List, NamedTuple, Optional, Sequence
 
 from ...geometry import Vec3, add, dot, rotate, scale
-from .contact_points import NORMAL, PLACE, ContactPoint
+from .contact_points import NORMAL, POINT, ContactPoint
 from .edge_loads import Loads
 from .link_states import Motion
 
@@ -40,8 +40,8 @@ class WheelEdges(NamedTuple):
         points: List[ContactPoint] = []
         for contact, upper in zip(contacts, self.upper):
             for share in _SHARES:
-                place = add(contact[PLACE], scale(self.along, -share if upper else share))
-                points.append((*contact[:PLACE], place, *contact[PLACE + 1:]))
+                place = add(contact[POINT], scale(self.along, -share if upper else share))
+                points.append((*contact[:POINT], place, *contact[POINT + 1:]))
         return points, [load / len(_SHARES) for load in loads for _ in _SHARES]
 
     def at_contacts(self, forces: Sequence[Vec3]) -> List[Vec3]:
@@ -72,7 +72,7 @@ def wheel_edges(axle: Optional[Vec3], moves: Motion, contacts: Sequence[ContactP
     if spin < _TURNS:
         return None
     along = rotate(moves.orientation, axle)
-    places = [dot(contact[PLACE], along) for contact in contacts]
+    places = [dot(contact[POINT], along) for contact in contacts]
     low, high = min(places), max(places)
     if high - low < _NARROW:
         return None

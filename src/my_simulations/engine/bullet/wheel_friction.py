@@ -28,7 +28,7 @@ from .contact_points import (
     LINK,
     OTHER_BODY,
     OTHER_LINK,
-    PLACE,
+    POINT,
     ContactPoint,
     LinkKey,
 )
@@ -346,7 +346,7 @@ class WheelFriction(StepHelper):
             if link.joint >= 0 and (slip > _HELD or norm(bias) > _CARRIES * sum(carried)):
                 slide.quiet = 0
             slide.steady &= slip <= _HELD or slip > ended * _PERIOD / (steps * dt)
-            slide.acting += [(contact[PLACE], force, load, other)
+            slide.acting += [(contact[POINT], force, load, other)
                              for contact, force, load in zip(points, forces, carried)]
 
     def _mobility(self, link: SurfaceLink, contact: ContactPoint, share: float) -> ContactMobility:
