@@ -31,8 +31,8 @@ from .collision_shapes import Recipe
 SLEEP_THRESHOLD = 0.01
 """Bodies slower than about 0.1 m/s (measured) for 2 s of sim time may sleep, as Gazebo's."""
 
-_SMALL = 0.025  # m, half of its least extent: a larger body meets 1 cm even at 40 m/s
-_SWEPT = 0.25   # of that: for a ball 5 mm wide 0.4 bounces right, 0.8 does not (measured)
+_CCD_HALF_EXTENT = 0.025  # m: thicker bodies do not pass a wall of 1 cm in 1 ms, even at 40 m/s
+_CCD_RADIUS = 0.25   # of the half extent: balls of 5 mm bounce wrong with 0.8 (measured)
 
 FASTEST_RATE = 1e6
 """Largest joint rate, rad/s or m/s; PyBullet clamps faster ones, by default at 100."""
@@ -74,7 +74,7 @@ class Axis:
 
     Attributes:
         number: which of its joint's axes it is.
-        ease: its mobility at joint positions 0, other joints free, 1/kg or 1/(kg m^2).
+        mobility: at joint positions 0, other joints free, 1/kg or 1/(kg m^2).
         lower, upper: its limits, rad or m.
         follower: for a screw, PyBullet's index of its other half, and the ratio of the motions.
     """
@@ -83,7 +83,7 @@ class Axis:
     index: int
     name: str
     number: int = 0
-    ease: float = 0.0
+    mobility: float = 0.0
     lower: float = -math.inf
     upper: float = math.inf
     follower: Optional[Tuple[int, float]] = None
@@ -115,14 +115,14 @@ class Body:
         moves: False for static and kinematic ones.
         rigid: joint-free, so it may sleep when `may_sleep`.
         is_sphere: its only collision is a sphere.
-        swept: so small that Bullet sweeps it along its way.
+        uses_ccd: so thin that Bullet detects its collisions continuously, along its path (CCD).
         lead_row: of its first part.
-        radius: of a sphere about the centre of mass that holds the body (rigid ones), m.
+        radius: of a sphere about the centre of mass that contains a rigid body, m.
         seen_at: its centre of mass at the last read-out; parting an overlap moves it without
             velocity.
         ties: how many joints connect it with other models.
         loads: how many timed forces and planar velocities act on it now.
-        turn_kept: share of its angular velocity that Bullet's damping leaves in a step.
+        angular_velocity_kept: share that Bullet's damping leaves of it in a step.
         shapes: its collision shapes, by PyBullet's numbers.
         pieces: of its links, with rows, centres of mass and axes of those (`surface_pieces`).
     """
@@ -137,14 +137,14 @@ class Body:
     moves: bool = True
     rigid: bool = True
     is_sphere: bool = False
-    swept: bool = False
+    uses_ccd: bool = False
     may_sleep: bool = True
     radius: float = 0.0
     still: int = 0
     seen_at: Optional[Vec3] = None
     ties: int = 0
     loads: int = 0
-    turn_kept: float = 1.0
+    angular_velocity_kept: float = 1.0
     shapes: Tuple[Tuple[Recipe, int], ...] = ()
     pieces: Tuple[Part, ...] = ()
     lead_row: int = field(init=False)
@@ -284,22 +284,26 @@ def set_base_twist(body: Body, link_pose: Pose, twist: Twist) -> None:
     pybullet.resetBaseVelocity(body.uid, com.linear, com.angular)
 
 
-def sweep(uid: int) -> bool:
-    """Let a small rigid body stop at what it would fly through within one step; whether it is one.
+def enable_ccd(uid: int) -> bool:
+    """Enable Bullet's continuous collision detection (CCD) if a rigid body is thin.
 
-    Bullet sweeps a sphere along the way of the centre, from 0.5 mm a step on. It must lie well
-    within the body, or bounces come out wrong.
+    Without CCD, a thin and fast body passes through a wall in one step. Bullet sweeps a sphere
+    along the path of the centre if that is longer than 0.5 mm in a step. The sphere must be well
+    inside the body, or bounces are wrong. Returns whether CCD is enabled.
     """
     low, high = pybullet.getAABB(uid, BASE)
     half = min(b - a for a, b in zip(low, high)) / 2
-    if not 0.0 < half < _SMALL:
+    if not 0.0 < half < _CCD_HALF_EXTENT:
         return False
-    pybullet.changeDynamics(uid, BASE, ccdSweptSphereRadius=_SWEPT * half)
+    pybullet.changeDynamics(uid, BASE, ccdSweptSphereRadius=_CCD_RADIUS * half)
     return True
 
 
 def radius_of(uid: int) -> float:
-    """Of a sphere about the centre of mass that holds the body, m; 0 for an endless one."""
+    """Return the radius of a sphere about the centre of mass that contains a body, m.
+
+    0 for an infinite body, as a plane.
+    """
     low, high = pybullet.getAABB(uid, BASE)
     if not -1e9 < low[0] <= high[0] < 1e9:
         return 0.0

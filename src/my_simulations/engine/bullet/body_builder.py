@@ -23,12 +23,12 @@ from .bodies import (
     BallJoint,
     Body,
     Part,
+    enable_ccd,
     mark_asleep,
     piece_pose,
     radius_of,
     remove,
     set_dynamics,
-    sweep,
 )
 from .collision_shapes import MAX_SHAPES, Recipe, ShapeFactory
 from .extra_surfaces import is_soft
@@ -178,7 +178,7 @@ class Builder:
                 mark_asleep(uid)
         body.radius = radius_of(uids[0])
         if body.rigid and body.moves:
-            body.swept = sweep(uids[0])
+            body.uses_ccd = enable_ccd(uids[0])
         return body
 
     def _create(self, masses: _Masses, shape: int, at: Pose) -> int:
@@ -329,9 +329,9 @@ class Builder:
         if axes and axes[0].row not in self._mobilities:
             found: Any = mobility(
                 MassMatrix(uid), [axis.index for axis in axes]).diagonal().tolist()
-            self._mobilities.update((axis.row, ease) for axis, ease in zip(axes, found))
+            self._mobilities.update((axis.row, value) for axis, value in zip(axes, found))
         for axis in axes:
-            axis.ease = self._mobilities[axis.row]
+            axis.mobility = self._mobilities[axis.row]
 
     def _ball_joint(self, plan: BodyPlan, node: TreeLink, index: int,
                     parts: Sequence[Part]) -> BallJoint:

@@ -107,30 +107,30 @@ STIFF = Yielding((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 """Of a link whose joint does not yield."""
 
 
-def yielding(lever: Vec3, ease: float, effort: float, slip: Vec3, end: float) -> Yielding:
+def yielding(lever: Vec3, rate_gain: float, effort: float, slip: Vec3, end: float) -> Yielding:
     """Return the change for a joint and other parts that yield alike in both directions.
 
-    The joint yields by g u u^T, with the lever u and the ease g. With D = 1 / end, by Sherman and
-    Morrison, E = g D u u^T D / (1 + g u^T D u).
+    The joint yields by g u u^T, with the lever u and g = `rate_gain`. With D = 1 / end, by Sherman
+    and Morrison, E = g D u u^T D / (1 + g u^T D u).
 
     Args:
         lever: velocity of the contact by the rate of the joint, m.
-        ease: change of the rate by a moment in the step, rad/(N m s).
+        rate_gain: change of the rate in the step per torque on the joint, rad/(N m s).
         effort: on the joint, N m.
         slip: mean, m/s.
         end: slip per force that friction ends, m/(N s).
     """
-    share = ease / (end + ease * dot(lever, lever))
+    share = rate_gain / (end + rate_gain * dot(lever, lever))
     given = dot(lever, slip) / end
     return Yielding(scale(lever, share * (given - effort)), scale(lever, share * given))
 
 
-def yielding_along(lever: Tuple[float, float], ease: float, effort: float,
+def yielding_along(lever: Tuple[float, float], rate_gain: float, effort: float,
                    slip: Tuple[float, float], soft: Tuple[float, float],
                    ) -> Tuple[Tuple[float, float], Tuple[float, float]]:
     """Return the same along two axes with different slips per force, `soft`."""
     u, v = lever[0] / soft[0], lever[1] / soft[1]
-    share = ease / (1.0 + ease * (u * lever[0] + v * lever[1]))
+    share = rate_gain / (1.0 + rate_gain * (u * lever[0] + v * lever[1]))
     given = u * slip[0] + v * slip[1]
     total, spared = share * (given - effort), share * given
     return (u * total, v * total), (u * spared, v * spared)

@@ -162,7 +162,7 @@ class Forces(StepHelper):
 
     def _update_loop_rows(self) -> None:
         rows = {self._acting[number].row for number in self._loops if number in self._acting}
-        self.servos.yield_to(rows)
+        self.servos.disable_for_loops(rows)
         self._loops_changed(rows)
 
     def loop_memories(self) -> Tuple[Tuple[int, LoopMemory], ...]:
@@ -320,7 +320,7 @@ class Forces(StepHelper):
             pybullet.applyExternalForce(body.uid, part.index, force, at, pybullet.WORLD_FRAME)
         if torque != ZERO3 and body.rigid:
             # Compensates Bullet's damping, which reduces the added velocity in this step.
-            _spin_up(body.uid, turn, part.moments, scale(torque, dt / body.turn_kept))
+            _spin_up(body.uid, turn, part.moments, scale(torque, dt / body.angular_velocity_kept))
         elif torque != ZERO3:
             pybullet.applyExternalTorque(body.uid, part.index, torque, pybullet.WORLD_FRAME)
 

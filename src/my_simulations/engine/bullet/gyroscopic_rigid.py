@@ -120,7 +120,7 @@ class GyroscopicRigid(StepHelper):
         """Correct a body after `span` s of free flight to match its angular momentum."""
         moments = self._moments[uid]
         momentum = scale(_momentum(flight.turn, flight.angular, moments),
-                         self._bodies[uid].turn_kept)
+                         self._bodies[uid].angular_velocity_kept)
         turn, parts = flight.turn, ceil(span * norm(flight.angular) / _ANGLE)
         for _ in range(parts):
             turn = _integrate_attitude(turn, momentum, moments, span / parts)

@@ -65,7 +65,7 @@ class HelperSet:
         self.settings = PhysicsSettings()
         self._models, self._bodies, self._axes = models, bodies_by_uid, axes
         self.notices = Notices(models, bodies_by_uid)
-        self.readout = StateReadout(self._on_diverged, self._on_raced)
+        self.readout = StateReadout(self._on_diverged, self._on_fastest_rate)
         self.row_reader = RowReader(self.readout, rows, axes)
         self.waker = WakeUp(bodies_by_uid, self._on_activated)
         self.mover = StateSetter(rows, axes, self.readout, self.row_reader, self.waker,
@@ -87,7 +87,7 @@ class HelperSet:
             self._holding, lambda row: self.motors.rate_of(row),
             lambda row, step: self.forces.effort_on(row, step))
         self.forces = Forces(self._waker_for(BodyEvent.FORCE_APPLIED),
-                             lambda rows: self.motors.yield_to(rows),
+                             lambda rows: self.motors.disable_for_loops(rows),
                              lambda body, axis: self.motors.restore(body, [axis]),
                              lambda row: self.motors.driven(row),
                              self.row_reader.read_links, self.row_reader.read_axes)
@@ -182,5 +182,5 @@ class HelperSet:
         self.mover.put_back(body)
         self.notices.diverged(body)
 
-    def _on_raced(self, body: Body) -> None:
-        self.notices.raced(body, self.settings.step_size)
+    def _on_fastest_rate(self, body: Body) -> None:
+        self.notices.reached_fastest_rate(body, self.settings.step_size)

@@ -163,7 +163,7 @@ class ImpactWatch(StepHelper):
         if body.rigid:
             # `radius` reaches the corners of the bounding box; that of a ball is smaller.
             self._radii[body.uid] = body.radius * (3.0 ** -0.5 if body.is_sphere else 1.0)
-        if body.base is None or body.swept and body.is_sphere:
+        if body.base is None or body.uses_ccd and body.is_sphere:
             return
         self._watched[body.uid] = _Watched(body)
         self._agenda.plan(body.uid, 0)

@@ -94,7 +94,7 @@ class ImplicitAxes:
         self.has_springs = bool(self._stiffness.any())
         self._others = 1.0 - _TRUST, _TRUST / dt, _TRUST
         self._tree: Optional[MassMatrix] = None
-        self._ease = np.eye(len(self._rows))
+        self._mobility = np.eye(len(self._rows))
         self._tells: List[int] = []               # axes whose position changes the mobility
         self._constant = False                    # no joint of the body does
         self._prepared_at: Optional[List[float]] = None
@@ -177,7 +177,7 @@ class ImplicitAxes:
         if cancelled:
             for n in cancelled:
                 self._efforts[n] = 0.0
-            self._given = (self._ease @ np.add(self._efforts, known)).tolist()
+            self._given = (self._mobility @ np.add(self._efforts, known)).tolist()
         for row, before, effort in zip(self._rows, known, self._efforts):
             efforts[row] = before + effort
 
@@ -216,20 +216,20 @@ class ImplicitAxes:
             balanced = self._tree.balanced()
             self._tells = [n for n, index in enumerate(self._indices) if index not in balanced]
             self._constant = self._tree.changes_only_by(balanced)
-        ease = self._ease = mobility(self._tree, self._indices)
+        matrix = self._mobility = mobility(self._tree, self._indices)
         one = np.eye(count)
-        decays = np.minimum(dt * np.diag(ease) * self._damping, _MOST_DECAYS)
+        decays = np.minimum(dt * np.diag(matrix) * self._damping, _MOST_DECAYS)
         spread = np.where(decays > 1e-9, np.expm1(decays) / np.maximum(decays, 1e-9), 1.0)
-        stiff = float(np.abs(ease * self._stiffness).sum(axis=1).max()) * dt * dt
+        stiff = float(np.abs(matrix * self._stiffness).sum(axis=1).max()) * dt * dt
         share = min(1.0, _STIFF * stiff)
-        keep = np.linalg.inv(one + dt * spread[:, None] * ease * (
+        keep = np.linalg.inv(one + dt * spread[:, None] * matrix * (
             self._damping + share * dt * self._stiffness))
         gain = keep * spread                      # of a dt in w'
-        pull = -(gain @ (ease * self._stiffness))  # acceleration by springs per position
-        own = np.hstack([(keep - one) / dt, pull, gain - one, (gain - one) @ ease])
+        pull = -(gain @ (matrix * self._stiffness))  # acceleration by springs per position
+        own = np.hstack([(keep - one) / dt, pull, gain - one, (gain - one) @ matrix])
         given = own.copy()
-        given[:, 3 * count:] += ease
-        inertia = _inverse(ease)
+        given[:, 3 * count:] += matrix
+        inertia = _inverse(matrix)
         self._answer = np.vstack([inertia @ own, given])
         self._at_rest = np.concatenate([inertia @ (-pull @ self._reference),
                                         -pull @ self._reference])

@@ -58,7 +58,7 @@ def set_up(body: Body, model: Model, forces: AxisEfforts, dt: float) -> None:
 
 
 def _is_explicit(spec: JointAxis, axis: Axis, dt: float, most: float) -> bool:
-    return not spec.spring_stiffness and spec.damping * dt * axis.ease <= most
+    return not spec.spring_stiffness and spec.damping * dt * axis.mobility <= most
 
 
 def _wheel_dampers(body: Body, found: List[Tuple[Axis, JointAxis]],

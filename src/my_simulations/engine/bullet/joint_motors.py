@@ -31,11 +31,11 @@ class JointMotors(BodyObserver):
         self._specs: Dict[int, JointAxis] = {}
         self._driven: Dict[int, Tuple[float, float]] = {}  # rates other than 0 now, and efforts
         self._efforts: Dict[int, float] = {}
-        self._yielding: Set[int] = set()
+        self._loop_rows: Set[int] = set()
 
-    def yield_to(self, rows: Set[int]) -> None:
+    def disable_for_loops(self, rows: Set[int]) -> None:
         """Disable the motors of axes that PID loops drive from now on; friction stays."""
-        changed, self._yielding = rows ^ self._yielding, set(rows)
+        changed, self._loop_rows = rows ^ self._loop_rows, set(rows)
         for row in changed:
             if row in self._motors and row in self._axes:
                 body, axis = self._axes[row]
@@ -101,7 +101,7 @@ class JointMotors(BodyObserver):
     def _target_of(self, row: int) -> Tuple[float, float]:
         """The rate of the motor or friction of an axis, rad/s or m/s, and its most effort."""
         motor = self._motors.get(row)
-        if motor is not None and motor.effort > 0.0 and row not in self._yielding:
+        if motor is not None and motor.effort > 0.0 and row not in self._loop_rows:
             return motor.rate, motor.effort
         spec = self._specs.get(row) or JointAxis()
         return spec.motor_rate, max(0.0, spec.friction)

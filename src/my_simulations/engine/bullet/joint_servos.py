@@ -62,7 +62,7 @@ class JointServos:
         self._axes, self._wake, self._release = axes, wake, release
         self._laws: Dict[int, ServoLaw] = {}
         self._busy: Dict[int, _Loops] = {}
-        self._yielding: Set[int] = set()
+        self._loop_rows: Set[int] = set()
         self._dt = 0.0
         self._step = -1   # of the last call of `act`
 
@@ -71,9 +71,9 @@ class JointServos:
         """Whether no servo must be computed in each step."""
         return not self._busy
 
-    def yield_to(self, rows: Set[int]) -> None:
+    def disable_for_loops(self, rows: Set[int]) -> None:
         """Disable the servos of axes that PID loops drive from now on; friction stays."""
-        changed, self._yielding = rows ^ self._yielding, set(rows)
+        changed, self._loop_rows = rows ^ self._loop_rows, set(rows)
         for row in changed & self._laws.keys():
             body, axis = self._axes[row]
             self._laws[row].reset_after_jump()
@@ -91,7 +91,7 @@ class JointServos:
         For a position target it is the largest rate on the way.
         """
         law = self._laws.get(row)
-        if law is None or law.servo.spline is not None or row in self._yielding:
+        if law is None or law.servo.spline is not None or row in self._loop_rows:
             return 0.0
         servo = law.servo
         if servo.of_rate or servo.drive == "velocity" and servo.gains is None:
@@ -197,13 +197,13 @@ class JointServos:
         """Return the effort of a servo in the last step, N m or N; 0 if it drives a motor."""
         law = self._laws.get(row)
         return law.last if law is not None and law.gives_effort and (
-            row not in self._yielding) else 0.0
+            row not in self._loop_rows) else 0.0
 
     def motor_strength(self, row: int) -> float:
         """Return the most effort of the motor that a servo drives, N m or N; 0 for none."""
         law = self._laws.get(row)
         return _strength(law.servo) if law is not None and not law.gives_effort and (
-            row not in self._yielding) else 0.0
+            row not in self._loop_rows) else 0.0
 
     def efforts(self, rows: Sequence[int]) -> Tuple[float, ...]:
         """Return the efforts on axes in the last step, N m or N; 0 without a servo or motor."""
@@ -213,7 +213,7 @@ class JointServos:
             if row not in self._axes:
                 found.append(0.0)
             elif law is not None and law.gives_effort:
-                found.append(0.0 if row in self._yielding else law.last)
+                found.append(0.0 if row in self._loop_rows else law.last)
             else:
                 body, axis = self._axes[row]
                 found.append(float(pybullet.getJointState(body.uid, axis.index)[3]))
@@ -223,14 +223,14 @@ class JointServos:
         """Collect the servos that must be computed in each step, by body."""
         self._busy = {}
         for row, law in self._laws.items():
-            if not law.steady and row not in self._yielding:
+            if not law.steady and row not in self._loop_rows:
                 body, axis = self._axes[row]
                 self._busy.setdefault(body.uid, _Loops(body.uid)).add(axis, law)
 
     def _drive(self, body: Body, axis: Axis) -> None:
         """Set the PyBullet motor of a servo that needs no computation in each step."""
         law = self._laws.get(axis.row)
-        if law is None or not law.steady or law.gives_effort or axis.row in self._yielding:
+        if law is None or not law.steady or law.gives_effort or axis.row in self._loop_rows:
             return
         servo = law.servo
         if servo.drive == "velocity":

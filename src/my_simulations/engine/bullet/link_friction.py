@@ -116,10 +116,10 @@ def _at_points(one: SurfaceLink, two: SurfaceLink, mine: Motion, loaded: Loads, 
     end = _end(one, two, mine, theirs, loaded, drive.mobility, dt, weight)
     lever = None if one.hinge is None or two.body.moves else one.hinge.lever(
         mine, contacts, loads, drive.held / (min(mus) * sum(loads)))
-    ease = 0.0 if one.hinge is None else _SOFT * dt * one.hinge.mobility
+    rate_gain = 0.0 if one.hinge is None else _SOFT * dt * one.hinge.mobility
     if mus[0] == mus[1] and not any(slow) and theirs is AT_REST:
         yields = STIFF if lever is None else yielding(
-            lever, ease, drive.effort, mean_velocity(mine, contacts, loads), end)
+            lever, rate_gain, drive.effort, mean_velocity(mine, contacts, loads), end)
         forces, slip, bias = isotropic(contacts, loads, mine, bias, mus[0], end, yields, _GROWS)
         return LinkFriction(forces, bias, slip, end * mus[0] * sum(loads))
     ends = end, end
@@ -134,7 +134,7 @@ def _at_points(one: SurfaceLink, two: SurfaceLink, mine: Motion, loaded: Loads, 
     slips = slips_along(contacts, axes, mine, theirs)
     given, spared = (0.0, 0.0), (0.0, 0.0)
     if lever is not None:
-        given, spared = yielding_along((dot(lever, axes[0]), dot(lever, axes[1])), ease,
+        given, spared = yielding_along((dot(lever, axes[0]), dot(lever, axes[1])), rate_gain,
                                        drive.effort, mean_slip(slips, loads), law.soft)
     return _along_axes(axes, slips, loads, bias, law, given, spared)
 

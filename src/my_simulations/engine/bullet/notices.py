@@ -45,7 +45,7 @@ class Notices:
         self._report(body.model_id, "diverged", body, "the state of model '{}' became infinite; it"
                      " was put back where it was, at rest")
 
-    def raced(self, body: Body, step_size: float) -> None:
+    def reached_fastest_rate(self, body: Body, step_size: float) -> None:
         """Report that a joint has reached the largest rate of the engine."""
         self._report(body.model_id, "diverged", body, "a joint of model '{}' turns or moves with "
                      f"{bodies.FASTEST_RATE:g} rad/s or m/s, the fastest that is computed: what"

@@ -45,16 +45,16 @@ class StateReadout(BodyObserver):
     events = COMMANDED | {BodyEvent.STATE_SET}
 
     def __init__(self, diverged: Callable[[Body], None],
-                 raced: Callable[[Body], None]) -> None:
-        """`diverged` gets bodies whose state is no number, to put them back where they were.
+                 reached_fastest_rate: Callable[[Body], None]) -> None:
+        """`diverged` is called with a body whose state is not finite, and must move it back.
 
-        `raced` gets bodies with a joint at the fastest rate that is computed.
+        `reached_fastest_rate` is called with a body of which a joint has the rate `FASTEST_RATE`.
         """
         self.links = np.zeros((LINKS, LINK_WIDTH))
         self.joints = np.zeros((JOINTS, JOINT_WIDTH))
         self.used_links = 0
         self.used_joints = 0
-        self._diverged, self._raced = diverged, raced
+        self._diverged, self._reached_fastest_rate = diverged, reached_fastest_rate
         self._link_bytes = memoryview(self.links.data).cast("B")
         self._joint_bytes = memoryview(self.joints.data).cast("B")
         self._awake: Dict[int, Body] = {}
@@ -304,7 +304,7 @@ class StateReadout(BodyObserver):
             self._diverged(body)    # which needs the rows as they were
             return
         if fastest >= FASTEST_RATE:
-            self._raced(body)
+            self._reached_fastest_rate(body)
         for part, one in zip(body.parts, found):
             offset = self._offsets.get(part.row)
             row = chain(*one) if offset is None else link_row(*one, offset)

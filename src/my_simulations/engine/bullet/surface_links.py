@@ -189,4 +189,4 @@ def _hinge_of(uid: int, axis: Axis) -> Optional[Hinge]:
     if joint[2] != pybullet.JOINT_REVOLUTE:
         return None
     centre, turn = pybullet.getDynamicsInfo(uid, axis.index)[3:5]
-    return Hinge(joint[13], rotate(conjugate(turn), scale(centre, -1.0)), axis.ease)
+    return Hinge(joint[13], rotate(conjugate(turn), scale(centre, -1.0)), axis.mobility)

@@ -65,7 +65,7 @@ def _damp(body: Body, linear: float, angular: float, dt: float) -> Tuple[float, 
     taken = [share if 0.0 <= share <= most else 0.0 for share in (linear, angular)]
     damping = [1.0 - (1.0 - share) ** (1.0 / dt) for share in taken]
     pybullet.changeDynamics(body.uid, BASE, linearDamping=damping[0], angularDamping=damping[1])
-    body.turn_kept = 1.0 - taken[1]
+    body.angular_velocity_kept = 1.0 - taken[1]
     return linear - taken[0], angular - taken[1]
 
 
