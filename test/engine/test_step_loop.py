@@ -84,7 +84,7 @@ def test_what_was_known_is_kept_from_one_run_to_the_next_until_a_command_changes
         if step == 1:
             late.steps.add(1)
             late.steps.add(2)
-            loop.changed()
+            loop.invalidate_due_steps()
         loop.run(step, 1, 0.001, (0.0, 0.0, -9.8))
     assert calls == [".", "a1<", ".", "a1>", "a2<", ".", "a2>"]
 

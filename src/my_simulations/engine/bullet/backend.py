@@ -1,4 +1,7 @@
-"""Carry out the commands and steps of a world in PyBullet; models have numbers."""
+"""Apply commands to a PyBullet world, make its steps, and read its state.
+
+`HelperSet` lists the helpers that act before and after the steps; `StepLoop` calls them.
+"""
 from __future__ import annotations
 
 from dataclasses import replace
@@ -62,8 +65,8 @@ class BulletBackend:
         self._readout, self._waker = self._helpers.readout, self._helpers.waker
         self._mover, self._notices = self._helpers.mover, self._helpers.notices
         self._row_reader = self._helpers.row_reader
-        self._put_off: Optional[List[Start]] = None
-        self._is_fresh = True   # nothing has moved since the world began
+        self._deferred_starts: Optional[List[Start]] = None
+        self._is_fresh = True   # no step was made since the world was created or cleared
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
             Restart: self._restart,
@@ -72,7 +75,7 @@ class BulletBackend:
             SetModelState: lambda command: self._mover.set_model(
                 command, self._entry(command.model_id)),
             SetLinkState: self._mover.set_link, SetJoints: self._mover.set_joints,
-            SetAxes: self._set_axes, PinModels: self._hold,
+            SetAxes: self._set_axes, PinModels: self._pin,
             ConnectModels: self._connect,
             DisconnectModels: self._disconnect,
             SetMotors: lambda command: self._helpers.motors.set(command.motors),
@@ -95,7 +98,7 @@ class BulletBackend:
     def apply(self, command: Command) -> object:
         if not isinstance(command, (Restart, Clear)):
             self._build_deferred()
-        self._helpers.loop.changed()
+        self._helpers.loop.invalidate_due_steps()
         if isinstance(command, (SetModelState, SetLinkState, SetJoints)):
             for model_id in command.of:
                 self._entry(model_id)
@@ -104,7 +107,7 @@ class BulletBackend:
     def configure(self, settings: PhysicsSettings) -> None:
         """Use other settings from the next step on; a changed gravity wakes everything."""
         self._build_deferred()
-        self._helpers.loop.changed()
+        self._helpers.loop.invalidate_due_steps()
         before = self._helpers.settings
         if settings.gravity != before.gravity:
             self._waker.everything()  # first: Bullet sets a new gravity for awake bodies only
@@ -117,26 +120,27 @@ class BulletBackend:
     def step(self, first: int, count: int) -> None:
         self._build_deferred()
         self._is_fresh = False
-        self._readout.stepped()
-        self._helpers.restored_sleep.stepped()
+        self._readout.mark_stepped()
+        self._helpers.restored_sleep.forget_commands()
         run, wrenches = self._helpers.loop.run, self._helpers.wrenches
         dt, gravity = self._helpers.settings.step_size, self._helpers.settings.gravity
         if wrenches.idle:
             run(first, count, dt, gravity)
             return
+        # The wrenches of joints are measured in the last step only: no earlier one can be read.
         if count > 1:
             run(first, count - 1, dt, gravity)
-        self._helpers.loop.changed()
+        self._helpers.loop.invalidate_due_steps()
         wrenches.before(count)
         run(first + count - 1, 1, dt, gravity)
         wrenches.after(dt, gravity)
-        self._helpers.loop.changed()
+        self._helpers.loop.invalidate_due_steps()
 
     def read(self) -> bool:
-        return self._put_off is not None or self._readout.read()
+        return self._deferred_starts is not None or self._readout.read()
 
     def read_poses(self) -> bool:
-        return self._put_off is not None or self._readout.read_poses()
+        return self._deferred_starts is not None or self._readout.read_poses()
 
     def read_rows(self, link_rows: Tuple[int, ...]) -> bytes:
         self._build_deferred()
@@ -210,15 +214,15 @@ class BulletBackend:
         if command.states:
             self._build_again(starts, command.states)
         elif len(starts) == len(self._models) and show_starts(self._readout, starts):
-            self._put_off = starts
+            self._deferred_starts = starts
         else:
             self._build_again(starts)
             keep_starts(self._readout, starts)
 
     def _build_deferred(self) -> None:
         """Build the bodies of a reset whose build was deferred."""
-        if self._put_off is not None:
-            self._build_again(self._put_off)
+        if self._deferred_starts is not None:
+            self._build_again(self._deferred_starts)
 
     def _build_again(self, starts: List[Start], states: Sequence[ModelState] = ()) -> None:
         self._clear(Clear())
@@ -281,7 +285,7 @@ class BulletBackend:
         self._waker.around(self._helpers.ties.disconnect(command.names))
 
     def _clear(self, _: Clear) -> None:
-        self._put_off = None
+        self._deferred_starts = None
         self._is_fresh = True
         self._models.clear()
         self._helpers.clear()
@@ -314,15 +318,15 @@ class BulletBackend:
                 raise CommandRefusedError("the link or joint of the wheel does not exist")
         self._helpers.wheel_friction.set_slips(command.wheels)
 
-    def _hold(self, command: PinModels) -> None:
-        self._helpers.holds.set(body for number in command.model_ids
-                        for body in self._entry(number).bodies)
+    def _pin(self, command: PinModels) -> None:
+        self._helpers.pinned.set(body for number in command.model_ids
+                                 for body in self._entry(number).bodies)
 
     def _read_run_state(self, _: ReadRunState) -> RunState:
         helpers = self._helpers
         resting = dict(helpers.settling.held)
         for body in self._bodies.values():
-            place = helpers.restored_sleep.place_of(body)
+            place = helpers.restored_sleep.rest_pose_of(body)
             if place is not None:
                 resting[body.lead_row] = place
         return RunState(

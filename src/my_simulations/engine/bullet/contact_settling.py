@@ -30,7 +30,7 @@ from ..run_state import PARTING_NOT_BEGUN, RestPose
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
 from .contact_points import DISTANCE, FRICTION, FRICTION_2, LOAD, OTHER_BODY
-from .rest import put_at_rest, read_place
+from .rest import put_at_rest, read_rest_pose
 from .step_helper import FAR, StepHelper, next_multiple
 from .world_parameters import USUAL_ACCURACY, Accuracy, WorldParameters
 
@@ -233,7 +233,7 @@ class ContactSettling(StepHelper):
               and not self._is_driven(body, states)):
             tree.looks += 1
             if tree.looks > _STANDS:
-                tree.held = read_place(body, states)
+                tree.held = read_rest_pose(body, states)
                 put_at_rest(body, tree.held)
                 return False
         else:

@@ -17,7 +17,7 @@ from ..run_state import RestPose
 from .bodies import Axis, Body
 from .body_events import BodyEvent
 from .link_states import motion
-from .rest import put_at_rest, read_place
+from .rest import put_at_rest, read_rest_pose
 from .step_helper import FAR, StepHelper, next_multiple
 
 RANGE = 1e4
@@ -84,7 +84,7 @@ class DivergenceStop(StepHelper):
     def stop(self, bodies: Iterable[Body]) -> None:
         """Keep bodies in place, at rest."""
         for body in bodies:
-            self._stops[body.uid] = read_place(body)
+            self._stops[body.uid] = read_rest_pose(body)
 
     def due(self, step: int) -> int:
         """Each step while a body is stopped or new, else each period."""
@@ -121,7 +121,7 @@ class DivergenceStop(StepHelper):
         else:
             return
         cause = self._cause(body, start, now.linear, (step - start.step) * dt, gravity)
-        place = self._stops[body.uid] = read_place(body)
+        place = self._stops[body.uid] = read_rest_pose(body)
         put_at_rest(body, place)
         self._moved(body)
         self._report(body, f"{what} and was stopped; likely cause: {cause}")

@@ -49,7 +49,7 @@ class HelperSet:
         waker: wakes the bodies that a command affects.
         mover: sets poses and velocities of models, links and joints.
         book: the constraints of joints.
-        forces, motors, planar, holds, wheel_friction, ties, wrenches: targets of commands.
+        forces, motors, planar, pinned, wheel_friction, ties, wrenches: targets of commands.
         settling, divergence, restored_sleep: store parts of the run state (`RunState`).
 
     Args:
@@ -94,7 +94,7 @@ class HelperSet:
         self._friction = FrictionBalance(self.notices.misfit)
         self._bounces = PairRestitution(self._parameters, self.notices.misfit)
         self._spin = GyroscopicRigid(lambda: self.forces.wrenched_links)
-        self.holds = PinnedBodies(self.waker.around)
+        self.pinned = PinnedBodies(self.waker.around)
         self.book = ConstraintBook()
         self.ties = InterModelJoints(self.book)
         self._decay = VelocityDecay()
@@ -113,7 +113,7 @@ class HelperSet:
                                       self._measured_joints)
         # The step helpers, in the order in which they act.
         helpers = (self._friction, self._bounces, self.settling, self._decay, self.forces,
-                   self.planar, self._spin, self._residual, self.wheel_friction, self.holds,
+                   self.planar, self._spin, self._residual, self.wheel_friction, self.pinned,
                    self._impacts, self._rolling, self._level, self._seams,
                    self.divergence, self.restored_sleep)
         self.loop = StepLoop(helpers, pybullet.stepSimulation, self._parameters.apply)
@@ -178,7 +178,7 @@ class HelperSet:
         self._notify(BodyEvent.ACTIVATED, body)
 
     def _on_diverged(self, body: Body) -> None:
-        self.loop.changed()
+        self.loop.invalidate_due_steps()
         self.mover.put_back(body)
         self.notices.diverged(body)
 

@@ -127,8 +127,8 @@ class StateReadout(BodyObserver):
         else:
             self._trees[body.uid] = body
 
-    def stepped(self) -> None:
-        """Record that a step was made: all awake bodies may have moved."""
+    def mark_stepped(self) -> None:
+        """Read all awake bodies at the next read-out: steps are made before it."""
         self._stepped = True
 
     def read(self) -> bool:

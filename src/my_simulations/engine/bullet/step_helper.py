@@ -56,19 +56,19 @@ class StepLoop(BodyObserver):
         self._moving: Set[int] = set()
 
     def add(self, body: Body) -> None:
-        self.changed()
+        self.invalidate_due_steps()
         if body.moves:
             self._moving.add(body.uid)
 
     def forget(self, body: Body) -> None:
-        self.changed()
+        self.invalidate_due_steps()
         self._moving.discard(body.uid)
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Compute again, before the next step, when each helper is due."""
         self._notified = True
 
-    def changed(self) -> None:
+    def invalidate_due_steps(self) -> None:
         """Compute again, before the next step, when each helper is due."""
         self._dues = []
 
