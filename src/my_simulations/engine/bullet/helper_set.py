@@ -74,15 +74,15 @@ class HelperSet:
         self._create()
 
     def _create(self) -> None:
-        """Create all helpers that store nothing but data of bodies."""
+        """Create the helpers whose data concern bodies only; a clear of the world discards them."""
         self._parameters = WorldParameters()
         self._residual = ResidualFriction(lambda uid: self._rolling.rolls(uid))
         self._impacts = ImpactWatch(
             lambda uid, other, normal: self._rolling.landed(uid, other, normal), self._parameters)
         self._rolling = RollingContacts(self._impacts.flies, lambda: self.forces.loaded_bodies,
                                         self._parameters.find_pairs, self._holding)
-        self._seams = SeamContacts(self._rolling, self._parameters)
-        self._level = LevelSeams(lambda: self._residual.fast, self._parameters)
+        self._triangle_seams = SeamContacts(self._rolling, self._parameters)
+        self._level_seams = LevelSeams(lambda: self._residual.fast, self._parameters)
         self.wheel_friction = WheelFriction(
             self._holding, lambda row: self.motors.rate_of(row),
             lambda row, step: self.forces.effort_on(row, step))
@@ -92,8 +92,8 @@ class HelperSet:
                              lambda row: self.motors.driven(row),
                              self.row_reader.read_links, self.row_reader.read_axes)
         self._friction = FrictionBalance(self.notices.misfit)
-        self._bounces = PairRestitution(self._parameters, self.notices.misfit)
-        self._spin = GyroscopicRigid(lambda: self.forces.wrenched_links)
+        self._restitution = PairRestitution(self._parameters, self.notices.misfit)
+        self._gyroscopic = GyroscopicRigid(lambda: self.forces.wrenched_links)
         self.pinned = PinnedBodies(self.waker.around)
         self.book = ConstraintBook()
         self.ties = InterModelJoints(self.book)
@@ -104,7 +104,7 @@ class HelperSet:
             self._notify)
         self.restored_sleep = RestoredSleep(self.settling.hold)
         self.divergence = DivergenceStop(self.notices.stopped, lambda: self.forces.loaded_bodies,
-                                          self.readout.mark_changed)
+                                         self.readout.mark_changed)
         self.motors = JointMotors(self._axes,
                                   partial(self._notify, BodyEvent.MOTOR_TARGET_CHANGED))
         self.planar = PlanarMotion(self._models, self.mover.present_model_pose,
@@ -112,12 +112,24 @@ class HelperSet:
         self.wrenches = JointWrenches(self._models, self.forces, self.wheel_friction,
                                       self._measured_joints)
         # The step helpers, in the order in which they act.
-        helpers = (self._friction, self._bounces, self.settling, self._decay, self.forces,
-                   self.planar, self._spin, self._residual, self.wheel_friction, self.pinned,
-                   self._impacts, self._rolling, self._level, self._seams,
-                   self.divergence, self.restored_sleep)
+        helpers = (
+            self._friction,         # before: stores friction coefficients for pairs in contact
+            self._restitution,      # before: stores restitutions for pairs that can collide
+            self.settling,          # before: holds robots at rest, chooses the solver's accuracy
+            self._decay,            # before: reduces velocities (velocity_decay of SDFormat)
+            self.forces,            # before: applies forces and efforts
+            self.planar,            # before: sets velocities of models in the plane
+            self._gyroscopic,       # after: corrects the attitude of bodies that tumble freely
+            self._residual,         # after: removes friction of contacts without load
+            self.wheel_friction,    # before: applies the friction of sliding wheels
+            self.pinned,            # after: puts bodies that users drag back to their poses
+            self._impacts,          # before: prepares impacts and landings
+            self._rolling,          # before: drops old contact points of lying cylinders
+            self._level_seams,      # after: removes pushes at seams between level floors
+            self._triangle_seams,   # before: compensates forces at seams between triangles
+            self.divergence,        # after: keeps models in place that were too fast or too far
+            self.restored_sleep)    # before: puts bodies of a restored world to sleep
         self.loop = StepLoop(helpers, pybullet.stepSimulation, self._parameters.apply)
-        # All that store data of single bodies.
         self._observers = (*helpers, self.ties, self.motors, self.wrenches, self.readout, self.loop)
         self._handlers = {event: tuple(observer.handle_event for observer in self._observers
                                        if event in observer.events) for event in BodyEvent}

@@ -1,4 +1,15 @@
-"""Run the helpers that act before and after the steps of Bullet."""
+"""Run the helpers that act before and after the steps of Bullet.
+
+A step in which helpers are due is made as follows:
+
+1. `before` of each helper that is due, in the order of the helpers. They read the state and the
+   contacts of the last step, and change bodies, coefficients and parameters of the world.
+2. `prepare`, which sets the parameters of the world that were requested (`WorldParameters`).
+3. The step of Bullet: collision detection, then the solver, then new positions.
+4. `after` of each helper that is due, in the same order. They correct velocities and poses.
+
+Steps in which no helper is due are made in one loop.
+"""
 from __future__ import annotations
 
 from collections import deque
@@ -10,7 +21,7 @@ from .agenda import FAR as FAR
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent, BodyObserver
 
-_Call = Callable[[int, float, Vec3], None]
+_Call = Callable[[int, float, Vec3], None]   # `StepHelper.before` or `after`
 
 
 class StepHelper(BodyObserver):
@@ -35,13 +46,13 @@ class StepHelper(BodyObserver):
 
 
 class StepLoop(BodyObserver):
-    """Makes steps, and calls the helpers that are due before and after them, in order."""
+    """Makes steps, and calls the helpers that are due before and after them, in their order."""
 
     events = COMMANDED | {BodyEvent.FIXED_AT_REST, BodyEvent.RELEASED}
 
-    def __init__(self, helpers: Sequence[StepHelper], one: Callable[[], object],
+    def __init__(self, helpers: Sequence[StepHelper], make_step: Callable[[], object],
                  prepare: Callable[[], None] = lambda: None) -> None:
-        """`one` makes a step; `prepare` is called before it, once all helpers have acted."""
+        """`make_step` makes a step; `prepare` is called before it, after all helpers."""
         self._helpers = helpers
         self._prepare = prepare
         self._befores: List[Optional[_Call]] = [
@@ -49,11 +60,11 @@ class StepLoop(BodyObserver):
             for helper in helpers]
         self._afters: List[Optional[_Call]] = [
             None if type(helper).after is StepHelper.after else helper.after for helper in helpers]
-        self._one = one
-        self._notified = False
-        self._dues: List[int] = []
+        self._make_step = make_step
+        self._notified = False         # an event was received: `_dues` may have changed
+        self._dues: List[int] = []     # of the helpers; empty if they must be computed again
         self._next = (0, 0)   # the step that follows the last one, and the first of `_dues`
-        self._moving: Set[int] = set()
+        self._moving: Set[int] = set()  # bodies that can move
 
     def add(self, body: Body) -> None:
         self.invalidate_due_steps()
@@ -74,7 +85,7 @@ class StepLoop(BodyObserver):
 
     def run(self, first: int, count: int, dt: float, gravity: Vec3) -> None:
         """Make `count` steps of `dt` s from count `first` on."""
-        helpers, one = self._helpers, self._one
+        helpers, make_step = self._helpers, self._make_step
         step, end = first, first + count
         dues, (follows, due) = self._dues, self._next
         # A world in real time makes one step per call: the due steps of the last call still hold.
@@ -82,26 +93,27 @@ class StepLoop(BodyObserver):
             dues = [helper.due(step) for helper in helpers]
             due = min(dues)
         while step < end:
-            free = min(due, end) - step
-            if free > 0:
-                # An empty step of Bullet takes 13 us, so a world without moving bodies omits it.
+            undisturbed = min(due, end) - step   # steps in which no helper acts
+            if undisturbed > 0:
+                # A step of Bullet takes 13 us even without bodies. If none can move, it is omitted.
                 self._prepare()
                 if self._moving:
-                    deque(starmap(one, repeat((), free)), maxlen=0)  # a loop without bytecode
-                step += free
+                    deque(starmap(make_step, repeat((), undisturbed)), maxlen=0)  # a loop in C
+                step += undisturbed
                 continue
-            acting, others = [], end
+            acting, next_other = [], end
             for n, at in enumerate(dues):
                 if at <= step:
                     acting.append(n)
-                elif at < others:
-                    others = at
-            # Mostly the same helpers act in each step. The others are checked after a change only.
-            while step < others:
+                elif at < next_other:
+                    next_other = at
+            # The same helpers usually act in many steps in a row. The due steps of the others are
+            # computed again only after an event.
+            while step < next_other:
                 self._notified = False
                 self._call(self._befores, acting, step, dt, gravity)
                 self._prepare()
-                one()
+                make_step()
                 self._call(self._afters, acting, step, dt, gravity)
                 step += 1
                 if self._notified:
