@@ -36,26 +36,26 @@ from .world_parameters import USUAL_ACCURACY, Accuracy, WorldParameters
 
 JointStates = Sequence[Any]  # as PyBullet returns them
 
-EVERY = 16            # steps between two checks of articulated bodies
-_RIGID_EVERY = 256    # the same for rigid bodies, of which there may be hundreds
-_SLOW = 0.02          # m/s and rad/s: of the base, and of all joints
-_STILL = 2e-5         # m/s and rad/s, of the base: a faster one moves, it does not creep
-_STILL_JOINT = 3e-4   # rad/s or m/s: the rate of a wheel of 6 cm on a base at _STILL
-_CLEAR = 3            # checks
-_STANDS = 32          # checks until a body is held; its acceleration is then below 4e-5 m/s^2
-_PUSHED = 2e-3        # m/s and rad/s: the base of a held body is slower between two checks
-_PUSHED_JOINT = 0.05  # rad/s or m/s
-_ON_ITS_WAY = 0.1     # share of the commanded rate: an axis above it moves
-_LEANS = 0.02         # friction force / normal force: above it, a body leans
-_SMALL = 0.06         # m, radius: a smaller body creeps on level floors too
+EVERY = 16               # steps between two checks of articulated bodies
+_RIGID_EVERY = 256       # the same for rigid bodies, of which there may be hundreds
+_SLOW_SPEED = 0.02       # m/s and rad/s: of the base, and of all joints
+_STILL_SPEED = 2e-5      # m/s and rad/s, of the base: a faster one moves, it does not creep
+_STILL_RATE = 3e-4       # rad/s or m/s: the rate of a wheel of 6 cm on a base at _STILL_SPEED
+_SKIPPED = 3             # checks that an arm without contacts skips
+_CHECKS_UNTIL_HELD = 32  # its acceleration is then below 4e-5 m/s^2
+_PUSHED_SPEED = 2e-3     # m/s and rad/s: the base of a held body is slower between two checks
+_PUSHED_RATE = 0.05      # rad/s or m/s: the same for its joints
+_MOVING_SHARE = 0.1      # share of the commanded rate: an axis above it moves
+_LEANING_RATIO = 0.02    # friction force / normal force: above it, a body leans
+_SMALL_RADIUS = 0.06     # m, radius: a smaller body creeps on level floors too
 _FOR_LEANING_BODIES = Accuracy(residual=1e-11)
 _FOR_STANDING_ROBOTS = Accuracy(4, 1e-15)
-_PARTING = 1.0        # s, at most
-_LEAST = 0.1          # s, at least: bodies placed just above a surface have landed by then
-_SHALLOW = 1e-4       # m: smaller overlaps may be separated with velocity
-_OVERLAPS_EVERY = 64  # steps between two checks of overlaps
-_PAST_STOP = 1e-6     # rad or m past a limit that are tolerated
-_PUT_BACK = 0.5       # share of the way back to the limit at each check
+_SPLIT_IMPULSE_TIME = 1.0  # s for which split impulses act, at most
+_LEAST_TIME = 0.1          # s, at least: bodies placed just above a surface have landed by then
+_TOLERATED_OVERLAP = 1e-4  # m: smaller overlaps may be separated with velocity
+_OVERLAPS_EVERY = 64       # steps between two checks of overlaps
+_PAST_LIMIT = 1e-6         # rad or m past a limit that are tolerated
+_CORRECTION = 0.5          # share of the way back to the limit at each check
 
 
 @dataclass
@@ -64,15 +64,15 @@ class _Tree:
 
     Attributes:
         indices: PyBullet's indices of its axes.
-        looks: consecutive checks at which it stood still.
-        clear: checks for which an arm without contacts is not queried for contacts.
+        still_checks: consecutive checks at which it stood still.
+        skip: number of the next checks that skip an arm without contacts.
         held: pose of its base, if that is free, and of its axes to restore; None: not held.
     """
 
     body: Body
     indices: List[int]
-    looks: int = 0
-    clear: int = 0
+    still_checks: int = 0
+    skip: int = 0
     held: Optional[RestPose] = None
 
 
@@ -82,7 +82,7 @@ class ContactSettling(StepHelper):
     Args:
         parameters: solver parameters of the world.
         loaded: returns the bodies that timed forces act on in this step.
-        driven: returns the rate to which the axis of a row is driven; 0 for none.
+        driven: returns the rate, rad/s or m/s, to which the axis of a row is driven; 0 for none.
         notify: is called when a body is fixed at rest, or released.
     """
 
@@ -96,25 +96,25 @@ class ContactSettling(StepHelper):
         self._moving: Set[int] = set()
         self._rigid: Dict[int, Body] = {}     # awake, or changed by a command since the last check
         self._leaning = False
-        self._new = False                     # a body was added since the last check
-        self._arrived: List[_Tree] = []       # added articulated bodies
-        self._until: Optional[int] = None     # the step at which split impulses end
+        self._has_new_bodies = False           # since the last step
+        self._new_trees: List[_Tree] = []
+        self._split_impulse_end: Optional[int] = None   # a step count; None: they do not act
 
     def add(self, body: Body) -> None:
         """Register a body; only articulated ones and those that may not sleep matter."""
-        self._new = True
+        self._has_new_bodies = True
         if body.moves:
             self._moving.add(body.uid)
         if body.moves and not body.rigid:
             tree = _Tree(body, [axis.index for axis in body.axes])
             self._trees[body.uid] = tree
-            self._arrived.append(tree)
+            self._new_trees.append(tree)
         elif body.moves and not body.sleeps:
             self._rigid[body.uid] = body
 
     def forget(self, body: Body) -> None:
         self._trees.pop(body.uid, None)
-        self._arrived = [tree for tree in self._arrived if tree.body is not body]
+        self._new_trees = [tree for tree in self._new_trees if tree.body is not body]
         self._moving.discard(body.uid)
         self._rigid.pop(body.uid, None)
         if not self._trees and not self._rigid:
@@ -128,21 +128,21 @@ class ContactSettling(StepHelper):
         tree = self._trees.get(body.uid)
         if tree is not None:
             held, tree.held = tree.held, None
-            tree.looks, tree.clear = 0, 0
+            tree.still_checks, tree.skip = 0, 0
             if held is not None:
                 self._notify(BodyEvent.RELEASED, body)
 
     @property
     def parting_end(self) -> Optional[int]:
         """See `RunState.parting_end`."""
-        return PARTING_NOT_BEGUN if self._new else self._until
+        return PARTING_NOT_BEGUN if self._has_new_bodies else self._split_impulse_end
 
     def resume_parting(self, end: Optional[int]) -> None:
         """Resume the split impulses of a saved state; added models do not start them again."""
         if end == PARTING_NOT_BEGUN:
             return
-        self._new, self._until = False, end
-        self._arrived.clear()
+        self._has_new_bodies, self._split_impulse_end = False, end
+        self._new_trees.clear()
         self._parameters.split_impulses(end is not None)
 
     @property
@@ -154,33 +154,34 @@ class ContactSettling(StepHelper):
     def hold(self, body: Body, place: RestPose) -> None:
         """Hold an articulated body at a pose, as if it had stood still long enough."""
         tree = self._trees[body.uid]
-        tree.looks = _STANDS + 1
+        tree.still_checks = _CHECKS_UNTIL_HELD + 1
         tree.held = place
         put_at_rest(body, place)
         self._notify(BodyEvent.FIXED_AT_REST, body)
 
     def due(self, step: int) -> int:
         """The next step if a body was added, otherwise the step of the next check."""
-        if self._new:
+        if self._has_new_bodies:
             return step
-        if self._trees or self._until is not None:
+        if self._trees or self._split_impulse_end is not None:
             return next_multiple(step, EVERY)
         return next_multiple(step, _RIGID_EVERY) if self._rigid else FAR
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Check periodically which bodies are at rest, and request the solver accuracy."""
-        if self._new:
-            self._new, self._until = False, step + round(_PARTING / dt)
+        if self._has_new_bodies:
+            self._has_new_bodies = False
+            self._split_impulse_end = step + round(_SPLIT_IMPULSE_TIME / dt)
             self._parameters.split_impulses(True)
             # At once: an arm whose zero pose is past its limits may be inside the ground there.
-            for tree in self._arrived if step % EVERY else ():
-                _put_back(tree.body, _states(tree))
-            self._arrived.clear()
+            for tree in self._new_trees if step % EVERY else ():
+                _correct_limits(tree.body, _states(tree))
+            self._new_trees.clear()
         if step % EVERY:
             return
-        if self._until is not None and (step >= self._until or (
-                step % _OVERLAPS_EVERY == 0 and self._is_parted(step, dt))):
-            self._until = None
+        if self._split_impulse_end is not None and (step >= self._split_impulse_end or (
+                step % _OVERLAPS_EVERY == 0 and self._is_separated(step, dt))):
+            self._split_impulse_end = None
             self._parameters.split_impulses(False)
         if step % _RIGID_EVERY == 0:
             self._rigid = {uid: body for uid, body in self._rigid.items() if not body.sleeps}
@@ -189,7 +190,7 @@ class ContactSettling(StepHelper):
         for tree in self._trees.values():
             states = _states(tree)
             if tree.held is None:
-                _put_back(tree.body, states)
+                _correct_limits(tree.body, states)
             held = tree.held is not None
             standing = self._stands(tree, states) or standing
             if held != (tree.held is not None):
@@ -198,12 +199,14 @@ class ContactSettling(StepHelper):
             _FOR_STANDING_ROBOTS if standing else
             _FOR_LEANING_BODIES if self._leaning else USUAL_ACCURACY)
 
-    def _is_parted(self, step: int, dt: float) -> bool:
-        """Whether no contact overlaps by more than `_SHALLOW`."""
-        assert self._until is not None
-        if step < self._until - round(_PARTING / dt) + round(_LEAST / dt):
+    def _is_separated(self, step: int, dt: float) -> bool:
+        """Whether no contact overlaps by more than `_TOLERATED_OVERLAP`."""
+        assert self._split_impulse_end is not None
+        begin = self._split_impulse_end - round(_SPLIT_IMPULSE_TIME / dt)
+        if step < begin + round(_LEAST_TIME / dt):
             return False
-        return all(contact[DISTANCE] > -_SHALLOW for contact in pybullet.getContactPoints())
+        return all(contact[DISTANCE] > -_TOLERATED_OVERLAP
+                   for contact in pybullet.getContactPoints())
 
     def _stands(self, tree: _Tree, states: JointStates) -> bool:
         """Whether an articulated body is slow, touches something, and is not held."""
@@ -211,33 +214,33 @@ class ContactSettling(StepHelper):
         held, tree.held = tree.held, None
         fastest = max([abs(state[1]) for state in states], default=0.0)
         speed = 0.0 if body.base is None else _speed(body.uid)
-        if speed > _SLOW or fastest > _SLOW and held is None:
-            tree.looks = 0
+        if speed > _SLOW_SPEED or fastest > _SLOW_SPEED and held is None:
+            tree.still_checks = 0
             return False
-        if tree.clear:
-            tree.clear -= 1
+        if tree.skip:
+            tree.skip -= 1
             return False
         contacts = pybullet.getContactPoints(bodyA=body.uid)
         if not contacts:
-            tree.looks, tree.clear = 0, _CLEAR if body.base is None else 0
+            tree.still_checks, tree.skip = 0, _SKIPPED if body.base is None else 0
             return False
         alone = not (body.ties or body.ball_joints or body.uid in self._loaded()
                      or any(contact[OTHER_BODY] in self._moving for contact in contacts))
         if held is not None:
-            if alone and speed < _PUSHED and fastest < _PUSHED_JOINT:
+            if alone and speed < _PUSHED_SPEED and fastest < _PUSHED_RATE:
                 tree.held = held
                 put_at_rest(body, held)
                 return False
-            tree.looks = 0
-        elif (alone and speed < _STILL and fastest < _STILL_JOINT
+            tree.still_checks = 0
+        elif (alone and speed < _STILL_SPEED and fastest < _STILL_RATE
               and not self._is_driven(body, states)):
-            tree.looks += 1
-            if tree.looks > _STANDS:
+            tree.still_checks += 1
+            if tree.still_checks > _CHECKS_UNTIL_HELD:
                 tree.held = read_rest_pose(body, states)
                 put_at_rest(body, tree.held)
                 return False
         else:
-            tree.looks = 0
+            tree.still_checks = 0
         return True
 
     def _is_driven(self, body: Body, states: JointStates) -> bool:
@@ -247,7 +250,7 @@ class ContactSettling(StepHelper):
         """
         for axis, (_, rate, *_) in zip(body.axes, states):
             wanted = self._driven(axis.row)
-            if wanted and abs(rate) > _ON_ITS_WAY * abs(wanted):
+            if wanted and abs(rate) > _MOVING_SHARE * abs(wanted):
                 return True
         return False
 
@@ -257,27 +260,27 @@ def _states(tree: _Tree) -> JointStates:
     return found
 
 
-def _put_back(body: Body, states: JointStates) -> None:
+def _correct_limits(body: Body, states: JointStates) -> None:
     """Move joints that are past a limit towards it, with unchanged rates."""
     for axis, (position, rate, *_) in zip(body.axes, states):
         past = position - min(max(position, axis.lower), axis.upper)
-        if abs(past) > _PAST_STOP:
-            pybullet.resetJointState(body.uid, axis.index, position - _PUT_BACK * past, rate)
+        if abs(past) > _PAST_LIMIT:
+            pybullet.resetJointState(body.uid, axis.index, position - _CORRECTION * past, rate)
 
 
 def _creeps(body: Body) -> bool:
     """Whether a rigid body is slow, and small or partly held by friction."""
     uid = body.uid
-    if _speed(uid) > _SLOW:
+    if _speed(uid) > _SLOW_SPEED:
         return False
-    if body.radius < _SMALL:
+    if body.radius < _SMALL_RADIUS:
         return True
     normal = along = across = 0.0
     for contact in pybullet.getContactPoints(bodyA=uid):
         normal += contact[LOAD]
         along += abs(contact[FRICTION])
         across += abs(contact[FRICTION_2])
-    return max(along, across) > _LEANS * normal
+    return max(along, across) > _LEANING_RATIO * normal
 
 
 def _speed(uid: int) -> float:

@@ -26,7 +26,7 @@ from .residual_friction import ResidualFriction
 from .rest import RestoredSleep
 from .rolling_contacts import RollingContacts
 from .row_reader import RowReader
-from .seams import LevelSeams, SeamContacts
+from .seams import LevelSeams, TriangleSeams
 from .state_readout import StateReadout
 from .state_restore import Entry
 from .state_setter import StateSetter
@@ -81,7 +81,7 @@ class HelperSet:
             lambda uid, other, normal: self._rolling.landed(uid, other, normal), self._parameters)
         self._rolling = RollingContacts(self._impacts.flies, lambda: self.forces.loaded_bodies,
                                         self._parameters.find_pairs, self._holding)
-        self._triangle_seams = SeamContacts(self._rolling, self._parameters)
+        self._triangle_seams = TriangleSeams(self._rolling, self._parameters)
         self._level_seams = LevelSeams(lambda: self._residual.fast, self._parameters)
         self.wheel_friction = WheelFriction(
             self._holding, lambda row: self.motors.rate_of(row),

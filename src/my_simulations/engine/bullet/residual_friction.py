@@ -46,22 +46,22 @@ from .link_states import Motion, motion
 from .step_helper import StepHelper, next_multiple
 from .surface_coefficients import is_direction_dependent, of_link
 
-_EVERY = 8         # checks are at multiples of this number of steps
-_FAST_EVERY = 16   # steps between two checks of a body that slides fast
-_EACH_EVERY = 16   # the same for a body that is corrected in each step, as it may come to rest
-_QUIET = 8         # such checks without a correction after which a fast body is checked seldom
-_SLOW_EVERY = 128  # steps between two checks of all other bodies that move
-_REST_EVERY = 512  # the same for a body at rest
-_FAST = 2e-3       # m/s, or rad/s: slower bodies may be at rest
-_MAY_STOP = 0.5    # m/s: slower bodies are checked in each step, as such friction may stop them
-_STUCK = 2e-5      # m/s: a smaller slip has no direction
-_BEYOND = 1.001    # of mu N: more friction violates Coulomb's law
-_TUMBLES = 1.5     # rad/s across gravity: the slip of a body that turns over is not predictable
-_MOST_CONTACTS = 8 # a body with more that touches a moving body, or two bodies, is in a pile
+_EVERY = 8            # checks are at multiples of this number of steps
+_FAST_EVERY = 16      # steps between two checks of a body that slides fast
+_EACH_EVERY = 16      # the same for a body that is corrected in each step, as it may come to rest
+_SELDOM_AFTER = 8     # such checks without a correction: then a fast body is checked seldom
+_SLOW_EVERY = 128     # steps between two checks of all other bodies that move
+_REST_EVERY = 512     # the same for a body at rest
+_FAST = 2e-3          # m/s, or rad/s: slower bodies may be at rest
+_MAY_STOP = 0.5       # m/s: slower bodies are checked in each step, as such friction may stop them
+_STUCK = 2e-5         # m/s: a smaller slip has no direction
+_ABOVE_LIMIT = 1.001  # of mu N: more friction violates Coulomb's law
+_TUMBLES = 1.5        # rad/s across gravity: the slip of a body that turns over is not predictable
+_MOST_CONTACTS = 8    # a body with more that touches a moving body, or two bodies, is in a pile
 _OTHER_BODY = itemgetter(OTHER_BODY)
 
 # Classes of bodies by their contacts:
-_FLIES, _PILED, _SLIDES, _MENDED = range(4)
+_FLIES, _PILED, _SLIDES, _CORRECTED = range(4)
 
 
 class ResidualFriction(StepHelper):
@@ -122,8 +122,8 @@ class ResidualFriction(StepHelper):
         """Correct bodies after the step that began at count `step`; periodically check others."""
         seen: Set[int] = set()
         for uid in list(self._each_step):
-            found = self._mend(uid, seen, dt)
-            if found == _MENDED:
+            found = self._correct(uid, seen, dt)
+            if found == _CORRECTED:
                 self._each_step[uid] = 0
             elif found != _SLIDES or uid not in self._new and self._rolls(uid):
                 del self._each_step[uid]
@@ -153,20 +153,21 @@ class ResidualFriction(StepHelper):
             return _FAST_EVERY
         linear, angular = pybullet.getBaseVelocity(uid)
         speed = max(dot(linear, linear), dot(angular, angular))
-        checks = self._each_step.get(uid, _QUIET if uid in self._fast else 0)
-        mended = self._each_step.get(uid) == 0
-        rests = speed <= _FAST * _FAST and not mended and (speed == 0.0 or not self._is_held(uid))
+        checks = self._each_step.get(uid, _SELDOM_AFTER if uid in self._fast else 0)
+        corrected = self._each_step.get(uid) == 0
+        rests = speed <= _FAST * _FAST and not corrected and (
+            speed == 0.0 or not self._is_held(uid))
         if rests or tumbles(angular, gravity, _TUMBLES):
             self._fast.pop(uid, None)
             soon = self._each_step.pop(uid, None) is not None
             return _REST_EVERY if speed == 0.0 else _FAST_EVERY if soon else _SLOW_EVERY
-        if checks < _QUIET or speed < _MAY_STOP * _MAY_STOP:
+        if checks < _SELDOM_AFTER or speed < _MAY_STOP * _MAY_STOP:
             self._fast[uid], self._each_step[uid] = None, checks + 1
             return _EACH_EVERY
         if self._each_step.pop(uid, None) is not None:
             return _FAST_EVERY
-        found = self._mend(uid, seen, dt)
-        if found == _MENDED:
+        found = self._correct(uid, seen, dt)
+        if found == _CORRECTED:
             self._each_step[uid] = 0
         elif found == _PILED:
             del self._fast[uid]
@@ -177,7 +178,7 @@ class ResidualFriction(StepHelper):
     def _is_held(self, uid: int) -> bool:
         """Whether residual friction holds a slow body against Coulomb's law."""
         contacts = pybullet.getContactPoints(bodyA=uid)
-        return (len(contacts) <= _MOST_CONTACTS and any(map(_is_left, contacts))
+        return (len(contacts) <= _MOST_CONTACTS and any(map(_is_residual, contacts))
                 and self._is_beyond_mu(uid, contacts))
 
     def _is_beyond_mu(self, uid: int, contacts: Sequence[ContactPoint]) -> bool:
@@ -191,10 +192,10 @@ class ResidualFriction(StepHelper):
             loads[node] = loads.get(node, 0.0) + contact[LOAD]
             frictions[node] = add(frictions.get(node, ZERO3), friction_force(contact))
         mu = self._mu.get((uid, BASE), inf)
-        return any(norm(frictions[node]) > _BEYOND * load * min(mu, self._mu[node])
+        return any(norm(frictions[node]) > _ABOVE_LIMIT * load * min(mu, self._mu[node])
                    for node, load in loads.items() if node in self._mu)
 
-    def _mend(self, uid: int, seen: Set[int], dt: float) -> int:
+    def _correct(self, uid: int, seen: Set[int], dt: float) -> int:
         """Undo the residual friction at the contacts of a body. Returns the class of the body."""
         contacts = pybullet.getContactPoints(uid)
         if not contacts:
@@ -202,24 +203,24 @@ class ResidualFriction(StepHelper):
         neighbours = self._moving.intersection(map(_OTHER_BODY, contacts))
         if len(neighbours) > 1 or neighbours and len(contacts) > _MOST_CONTACTS:
             return _PILED
-        left = [each for each in contacts if each[LOAD] <= 0.0 and _is_left(each)]
-        if not left or len(contacts) > _MOST_CONTACTS:
+        residual = [each for each in contacts if each[LOAD] <= 0.0 and _is_residual(each)]
+        if not residual or len(contacts) > _MOST_CONTACTS:
             return _SLIDES
         # Bodies with joints use another solver, which leaves no such friction.
         if not neighbours.isdisjoint(seen | self._trees):
-            left = [each for each in left if each[OTHER_BODY] not in neighbours]
-        if left:
+            residual = [each for each in residual if each[OTHER_BODY] not in neighbours]
+        if residual:
             linear, angular = pybullet.getBaseVelocity(uid)
             if max(dot(linear, linear), dot(angular, angular)) <= _FAST * _FAST:
                 if not self._is_beyond_mu(uid, contacts):
                     return _SLIDES
                 if norm(linear) < _STUCK:
                     collision_groups.moving(self._bodies[uid].parts[0].link).set(uid, BASE)
-                    return _MENDED
-        for contact in left:
+                    return _CORRECTED
+        for contact in residual:
             self._undo_friction(contact, dt)
         seen.add(uid)
-        return _MENDED if left else _SLIDES
+        return _CORRECTED if residual else _SLIDES
 
     def _undo_friction(self, contact: ContactPoint, dt: float) -> None:
         """Undo the friction impulses of one contact; the first direction opposes the slip."""
@@ -248,7 +249,7 @@ def _push(body: Body, before: Motion, impulse: Vec3, at: Vec3) -> None:
         before.linear[2] + impulse[2] / part.mass), add(before.angular, gained))
 
 
-def _is_left(contact: ContactPoint) -> bool:
+def _is_residual(contact: ContactPoint) -> bool:
     """Whether a contact without load has friction.
 
     Contacts of separated surfaces are excluded: their forces are of an older step.

@@ -1,6 +1,6 @@
 """Correct what seams between triangles and between level floors do to cylinders.
 
-`SeamContacts`: forces on wheels and cylinders that roll over seams between triangles. A lying
+`TriangleSeams`: forces on wheels and cylinders that roll over seams between triangles. A lying
 cylinder that overlaps a floor of triangles also touches the edge of the triangle ahead or behind.
 That edge carries part of the weight, pushes along or against the motion, and turns the wheel
 (figures: doc/dev/contacts.md, "Cylinders on their side"). Two corrections are made:
@@ -41,18 +41,18 @@ from .rolling_contacts import RollingContacts, axis_of
 from .step_helper import FAR, StepHelper, next_multiple
 from .world_parameters import WorldParameters
 
-_APART = 5e-4  # of a body's size: closer points are merged (Bullet's default: 0.02)
-_CHORD = 1.5   # of the half chord in the floor: an edge beyond it is an obstacle
-_SAME = 0.95   # smallest cosine between two normals of one surface
+_SPACING_ON_TRIANGLES = 5e-4  # of a body's size: closer points are merged (Bullet's default: 0.02)
+_CHORD = 1.5                  # of the half chord in the floor: an edge beyond it is an obstacle
+_SAME = 0.95                  # smallest cosine between two normals of one surface
 
 EVERY = 8
 """Steps between two checks of sliding bodies."""
 
-_WIDE = 0.2        # of a body's size: points of surfaces that slid farther apart are dropped
-_FAST = 0.05       # m/s: a slower body does not sink
-_LEVEL = 1e-4      # m: floors with a smaller height difference are level
-_UP = 0.999        # of a normal, or an axis, along z: less is a side, or a leaning body
-_NEAR = 0.06       # m beyond the path until the next check: Bullet finds pairs 5 cm ahead
+_WIDE_SPACING = 0.2  # of a body's size: points of surfaces that slid farther apart are dropped
+_FAST = 0.05         # m/s: a slower body does not sink
+_LEVEL = 1e-4        # m: floors with a smaller height difference are level
+_UP = 0.999          # of a normal, or an axis, along z: less is a side, or a leaning body
+_NEAR = 0.06         # m beyond the path until the next check: Bullet finds pairs 5 cm ahead
 
 _Velocity = Tuple[Vec3, Vec3]
 
@@ -65,7 +65,7 @@ class _Push(NamedTuple):
     torque: Vec3
 
 
-class SeamContacts(StepHelper):
+class TriangleSeams(StepHelper):
     """Compensates the forces of triangle edges on rolling links."""
 
     events = COMMANDED
@@ -82,9 +82,11 @@ class SeamContacts(StepHelper):
 
     def due(self, step: int) -> int:
         """Each step while a link rolls on triangles, otherwise the step of the next check."""
-        if self._pushes or self._rolling.on_seams:
+        if self._pushes or self._rolling.on_triangles:
             return step
-        return next_multiple(step, rolling_contacts.EVERY) if self._rolling.knows_seams else FAR
+        if self._rolling.can_roll_on_triangles:
+            return next_multiple(step, rolling_contacts.EVERY)
+        return FAR
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Compensate the edge forces of the last step; record the poses of rolling links."""
@@ -94,11 +96,11 @@ class SeamContacts(StepHelper):
                                             pybullet.WORLD_FRAME)
                 pybullet.applyExternalTorque(uid, index, push.torque, pybullet.WORLD_FRAME)
         self._pushes.clear()
-        for key, axis in self._rolling.on_seams.items():
+        for key, axis in self._rolling.on_triangles.items():
             centre, turn = read_com_pose(*key)
             self._at[key] = centre, rotate(turn, axis)
         if self._at:
-            self._parameters.request_spacing(_APART)
+            self._parameters.request_spacing(_SPACING_ON_TRIANGLES)
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Compute the compensation for the step that began at count `step`."""
@@ -107,7 +109,7 @@ class SeamContacts(StepHelper):
         for key, (centre, axis) in self._at.items():
             ends: Dict[bool, List[ContactPoint]] = {}
             for contact in pybullet.getContactPoints(bodyA=key[0], linkIndexA=key[1]):
-                if contact[DISTANCE] <= 0.0 and self._rolling.is_seamed(contact[OTHER_BODY]):
+                if contact[DISTANCE] <= 0.0 and self._rolling.has_triangles(contact[OTHER_BODY]):
                     end = dot(subtract(contact[POINT], centre), axis) > 0.0
                     ends.setdefault(end, []).append(contact)
             pushes = [push for contacts in ends.values() for push in _pushes(
@@ -211,14 +213,14 @@ class LevelSeams(StepHelper):
                     continue
                 self._widen(uid, floors)
                 if len(self._floors) > 1:
-                    self._see_seam(uid, floors[0], EVERY * dt)
+                    self._find_seam(uid, floors[0], EVERY * dt)
 
     def _widen(self, uid: int, floors: Collection[int]) -> None:
         """Drop the points of a body on a new floor; its next ones may slide apart farther."""
         wide = self._sliding.setdefault(uid, set())
         if not wide.issuperset(floors):
             self._bodies[uid][0].set(uid, BASE)
-            self._parameters.request_spacing(_WIDE)
+            self._parameters.request_spacing(_WIDE_SPACING)
         self._sliding[uid] = set(floors)
 
     def _floors_under(self, uid: int) -> List[int]:
@@ -238,7 +240,7 @@ class LevelSeams(StepHelper):
             floors.update((contact[OTHER_BODY], None) for contact in contacts)
         return list(floors)
 
-    def _see_seam(self, uid: int, floor: int, duration: float) -> None:
+    def _find_seam(self, uid: int, floor: int, duration: float) -> None:
         """Store the level floors that a body can reach within `duration`, s, if more than one."""
         reach = norm(pybullet.getBaseVelocity(uid)[0]) * duration + _NEAR
         low, high = pybullet.getAABB(uid, BASE)
