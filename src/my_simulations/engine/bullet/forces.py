@@ -42,7 +42,7 @@ class Forces(StepHelper):
     """Applies forces and efforts before each step.
 
     Attributes:
-        slip: friction of links with force-dependent slip.
+        servos: the servos of joint axes.
     """
 
     events = frozenset((BodyEvent.STATE_SET, BodyEvent.STATE_REPAIRED, BodyEvent.FIXED_AT_REST,
@@ -54,14 +54,15 @@ class Forces(StepHelper):
                  motor_of: Callable[[int], Motor] = lambda row: None,
                  read_links: Callable[[Tuple[int, ...]], bytes] = lambda rows: b"",
                  read_axes: Callable[[Tuple[int, ...]], List[float]] = lambda rows: []) -> None:
-        """`loops_changed` receives the axis rows that PID loops drive whenever these change.
+        """`loops_changed` is called with the axis rows that PID loops drive, when these change.
 
         `release` restores the motor or friction of an axis that a servo left. `motor_of` returns
         the motor of the axis of a row. `read_links` returns the current rows of links,
         `read_axes` the position and rate of axes.
         """
         self._motor_of, self._read_links, self._read_axes = motor_of, read_links, read_axes
-        self._by_law: Dict[int, Tuple[Vec3, Vec3]] = {}   # of the last step, by force id
+        # Forces and torques that wrench laws gave in the last step, by force id.
+        self._by_law: Dict[int, Tuple[Vec3, Vec3]] = {}
         self._wake = wake
         self._loops_changed = loops_changed
         self._timed: Dict[int, TimedForce] = {}
@@ -99,13 +100,13 @@ class Forces(StepHelper):
             self._implicit[body.uid] = axes
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
-        """Reset loops after joints were set; omit dampers of a body that is fixed at rest."""
+        """Reset servos and dampers after joints were set; omit dampers of a body fixed at rest."""
         if event is BodyEvent.FIXED_AT_REST:
             # A servo can move the body at any time.
             if not self.servos.drives(body):
-                self._exchange_dampers(body, self._implicit, self._resting)
+                self._move_dampers(body, self._implicit, self._resting)
         elif event is BodyEvent.RELEASED:
-            self._exchange_dampers(body, self._resting, self._implicit)
+            self._move_dampers(body, self._resting, self._implicit)
         elif event is BodyEvent.MOTOR_TARGET_CHANGED:
             if body.uid in self._implicit:
                 self._implicit[body.uid].is_cancelled = False
@@ -115,15 +116,16 @@ class Forces(StepHelper):
             self.servos.reset_after_jump(body)
 
     @staticmethod
-    def _exchange_dampers(body: Body, now: Dict[int, ImplicitAxes],
-                          then: Dict[int, ImplicitAxes]) -> None:
-        axes = now.get(body.uid)
+    def _move_dampers(body: Body, source: Dict[int, ImplicitAxes],
+                      target: Dict[int, ImplicitAxes]) -> None:
+        """Move the dampers of a body to another table, unless it has springs."""
+        axes = source.get(body.uid)
         if axes is not None and not axes.has_springs:
             axes.reset_after_jump()
-            then[body.uid] = now.pop(body.uid)
+            target[body.uid] = source.pop(body.uid)
 
     def forget(self, body: Body) -> None:
-        """Drop a body and every timed force on it."""
+        """Discard a removed body and the timed forces on it."""
         self.set_implicit(body, None)
         self.servos.forget(body)
         rows = {part.row for part in body.parts}
@@ -146,7 +148,7 @@ class Forces(StepHelper):
         return ""
 
     def drop(self, force_ids: Sequence[int]) -> None:
-        """Drop timed forces by id."""
+        """Remove timed forces by id."""
         ended = [self._loops.pop(force_id, None) for force_id in force_ids]
         for force_id in force_ids:
             self._timed.pop(force_id, None)
@@ -315,7 +317,7 @@ class Forces(StepHelper):
             return
         at, turn = read_com_pose(body.uid, part.index)
         force, torque = _in_world(wrench, part, turn) if wrench.law is None \
-            else self._computed(wrench, wrench.law, part.link_from_com.position)
+            else self._wrench_of_law(wrench, wrench.law, part.link_from_com.position)
         if force != ZERO3:
             pybullet.applyExternalForce(body.uid, part.index, force, at, pybullet.WORLD_FRAME)
         if torque != ZERO3 and body.rigid:
@@ -324,7 +326,7 @@ class Forces(StepHelper):
         elif torque != ZERO3:
             pybullet.applyExternalTorque(body.uid, part.index, torque, pybullet.WORLD_FRAME)
 
-    def _computed(self, wrench: TimedWrench, law: WrenchLaw, com: Vec3) -> Tuple[Vec3, Vec3]:
+    def _wrench_of_law(self, wrench: TimedWrench, law: WrenchLaw, com: Vec3) -> Tuple[Vec3, Vec3]:
         """Return force and torque for the state of the link; zero if they are not finite."""
         n = _ROW.unpack(self._read_links((wrench.row,)))
         joint = AT_REST
@@ -338,7 +340,10 @@ class Forces(StepHelper):
 
 
 def _in_world(wrench: TimedWrench, part: Part, turn: Quat) -> Tuple[Vec3, Vec3]:
-    """Return force, and torque about the centre of mass, in world axes; `turn`: PyBullet's."""
+    """Return force, and torque about the centre of mass, in world axes.
+
+    `turn`: the orientation of the principal axes.
+    """
     force, torque, point = wrench.force, wrench.torque, wrench.point
     if wrench.in_link_axes:
         # PyBullet's frame has the principal axes, the wrench is given in the link's axes.
@@ -348,7 +353,7 @@ def _in_world(wrench: TimedWrench, part: Part, turn: Quat) -> Tuple[Vec3, Vec3]:
 
 
 def _spin_up(uid: int, turn: Quat, moments: Vec3, impulse: Vec3) -> None:
-    """Add angular momentum to a rigid body (N m s, world axes).
+    """Add angular momentum `impulse` to a rigid body (N m s, world axes).
 
     This replaces a torque for two reasons. Bullet's friction does not include torques, so a body
     held by friction would creep by the velocity that a torque adds in one step. Bullet updates

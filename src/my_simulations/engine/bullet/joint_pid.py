@@ -1,4 +1,4 @@
-"""PID loops on joint axes."""
+"""PID controllers of joint axes."""
 from __future__ import annotations
 
 from typing import Optional
@@ -7,46 +7,48 @@ from ..run_state import LoopMemory
 from ..timed_forces import JointPid
 
 MOST_EFFORT = 1000.0
-"""N m or N that a loop may ask for where the axis has no limit (Gazebo's `JointController`)."""
+"""N m or N: the limit of a loop on an axis without one (Gazebo's `JointController`)."""
 
 
 class PidController:
-    """One loop: effort = -(p e + i integral of e + d de/dt), e = present - target.
+    """Computes effort = -(p e + i integral of e + d de/dt), with e = present - target.
 
-    Gazebo's `common::PID`, but for the integral, which Gazebo stops at an effort of 1: here it
-    stops growing while the effort is at its limit, so that it carries what weight the joint bears
-    and does not wind up at a stop.
+    This is Gazebo's `common::PID` except for the integral, which Gazebo limits to an effort of 1.
+    Here the integral stops growing while the effort is at its limit (anti-windup). So it can
+    balance any weight on the joint, and does not grow at a limit of the joint.
     """
 
-    def __init__(self, servo: JointPid) -> None:
-        self._servo = servo
+    def __init__(self, settings: JointPid) -> None:
+        self._settings = settings
         self._integral = 0.0
-        self._last: Optional[float] = None
+        self._last_error: Optional[float] = None
 
     @property
     def memory(self) -> LoopMemory:
-        """Its state, for `resume`."""
-        return LoopMemory(self._integral, self._last)
+        """The state of the loop, for `resume`."""
+        return LoopMemory(self._integral, self._last_error)
 
     def resume(self, memory: LoopMemory) -> None:
-        self._integral, self._last = memory.integral, memory.error
+        """Continue from a saved state."""
+        self._integral, self._last_error = memory.integral, memory.error
 
     def effort(self, position: float, rate: float, dt: float, most: float) -> float:
-        """What to drive the axis with in the next step, N m or N.
+        """Return the effort on the axis in the next step, N m or N.
 
         Args:
-            position: of the axis now, rad or m; `rate` per second.
-            rate: see position.
+            position: of the axis, rad or m.
+            rate: of the axis, rad/s or m/s.
             dt: the step size, s.
-            most: what the effort is limited to, either way.
+            most: limit of the absolute effort, N m or N.
         """
-        servo = self._servo
-        error = (rate if servo.rate else position) - servo.target
-        slope = 0.0 if self._last is None else (error - self._last) / dt
-        self._last = error
-        grown = self._integral + servo.i * error * dt
-        wanted = -(servo.p * error + grown + servo.d * slope)
-        given = max(-most, min(most, wanted))
-        if given == wanted or (wanted > given) == (error > 0.0):
-            self._integral = grown
-        return given
+        settings = self._settings
+        error = (rate if settings.rate else position) - settings.target
+        slope = 0.0 if self._last_error is None else (error - self._last_error) / dt
+        self._last_error = error
+        integral = self._integral + settings.i * error * dt
+        unlimited = -(settings.p * error + integral + settings.d * slope)
+        effort = max(-most, min(most, unlimited))
+        # At the limit, the integral may only change towards lower absolute efforts.
+        if effort == unlimited or (unlimited > effort) == (error > 0.0):
+            self._integral = integral
+        return effort
