@@ -89,7 +89,7 @@ class HelperSet:
         self.forces = Forces(self._waker_for(BodyEvent.FORCE_APPLIED),
                              lambda rows: self.motors.disable_for_loops(rows),
                              lambda body, axis: self.motors.restore(body, [axis]),
-                             lambda row: self.motors.driven(row),
+                             lambda row: self.motors.motor_of(row),
                              self.row_reader.read_links, self.row_reader.read_axes)
         self._friction = FrictionBalance(self.notices.misfit)
         self._restitution = PairRestitution(self._parameters, self.notices.misfit)

@@ -1,4 +1,4 @@
-"""Joint axes: limits, friction, damping, and no hidden motors."""
+"""Apply limits, friction, damping and springs of the description to joint axes."""
 from __future__ import annotations
 
 import math
@@ -12,23 +12,26 @@ from .bodies import Axis, Body
 from .implicit_axes import ImplicitAxes, mobility
 from .mass_matrix import MassMatrix
 
-_LIMIT_FORCE = 1e6         # N or N m a kilogram: holds 1000 kg at its stop (100 a kg falls through)
+_LIMIT_FORCE = 1e6         # N/kg or N m/kg: with 100, 1000 kg fall through a joint limit
 _EXPLICIT_DAMPING = 0.01   # d dt / I up to which PyBullet's explicit damping is exact enough
-_WHEEL_DAMPING = 0.04      # the same for wheels, whose decay can be made exact beforehand
+_WHEEL_DAMPING = 0.04      # the same for wheels, for which `_wheel_dampers` computes exact values
 
 
 class AxisEfforts(Protocol):
-    """What is told the limits of axes, and which of them are integrated implicitly."""
+    """Receives the limits of axes, and the springs and dampers to integrate implicitly.
+
+    `Forces` has these methods; its module imports this one.
+    """
 
     def set_limits(self, row: int, effort: float, rate: float) -> None:
-        """The most effort, N or N m, and rate, m/s or rad/s, of an axis; below 0 for none."""
+        """Limit the effort, N or N m, and the rate, m/s or rad/s, of an axis; below 0 for none."""
 
     def set_implicit(self, body: Body, axes: Optional[ImplicitAxes]) -> None:
-        """The springs and dampers of a body; None without any."""
+        """Set the springs and dampers of a body; None removes them."""
 
 
 def specs_of(body: Body, model: Model) -> List[Tuple[Axis, JointAxis]]:
-    """The axes of a body of `model`, each with its description."""
+    """Return the axes of a body of `model`, each with its description."""
     specs = {joint.name: (joint.axis, joint.axis2) for joint in model.joints}
     return [(axis, specs[axis.name][axis.number] or JointAxis()) for axis in body.axes]
 
@@ -36,7 +39,7 @@ def specs_of(body: Body, model: Model) -> List[Tuple[Axis, JointAxis]]:
 def set_up(body: Body, model: Model, forces: AxisEfforts, dt: float) -> None:
     """Apply limits, friction, damping and springs of the description to the axes of a body."""
     mass = sum(part.mass for part in body.parts)
-    _free(body)
+    _disable_motors(body)
     found = specs_of(body, model)
     implicit: List[Tuple[Axis, JointAxis]] = []
     wheels = _wheel_dampers(body, found, dt)
@@ -45,7 +48,7 @@ def set_up(body: Body, model: Model, forces: AxisEfforts, dt: float) -> None:
         pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.VELOCITY_CONTROL,
                                        targetVelocity=spec.motor_rate,
                                        force=max(0.0, spec.friction))
-        _limit(body, axis, spec, mass)
+        _set_limits(body, axis, spec, mass)
         forces.set_limits(axis.row, spec.effort, spec.velocity)
         explicit = _is_explicit(spec, axis, dt, _EXPLICIT_DAMPING)
         damping = wheels.get(axis.index, spec.damping if explicit else None)
@@ -58,17 +61,18 @@ def set_up(body: Body, model: Model, forces: AxisEfforts, dt: float) -> None:
 
 
 def _is_explicit(spec: JointAxis, axis: Axis, dt: float, most: float) -> bool:
+    """Whether d dt / I of an axis without a spring is at most `most`."""
     return not spec.spring_stiffness and spec.damping * dt * axis.mobility <= most
 
 
 def _wheel_dampers(body: Body, found: List[Tuple[Axis, JointAxis]],
                    dt: float) -> Dict[int, float]:
-    """Explicit dampers, N m s/rad by joint index, that slow free wheels as their own dampers do.
+    """Return explicit dampers, N m s/rad by joint index, with the same decay as those of wheels.
 
-    An explicit damper d' takes the share dt A d' of a rate in a step, where A is the mobility; the
-    damper d takes 1 - exp(-dt A d). As wheels leave A as it is, d' can be had once. Under a load
-    it is weaker than d by dt A d / 2: 2 % at most. Nothing is done in the steps then: it makes
-    ten driving robots a fifth cheaper.
+    An explicit damper d' reduces a rate by the share dt A d' in a step, where A is the mobility;
+    the damper d by 1 - exp(-dt A d). The rotation of wheels does not change A, so d' is computed
+    once, and the steps need no computation. With ten driving robots they take a fifth less time.
+    Under a load d' is weaker than d by dt A d / 2: 2 % at most.
     """
     damped = [(axis, spec) for axis, spec in found if spec.damping > 0.0]
     if not damped or not all(_is_explicit(spec, axis, dt, _WHEEL_DAMPING)
@@ -85,8 +89,8 @@ def _wheel_dampers(body: Body, found: List[Tuple[Axis, JointAxis]],
             for index, (_, spec), decay in zip(indices, damped, decays)}
 
 
-def _free(body: Body) -> None:
-    """Switch the motors off that createMultiBody leaves on every axis, also those without a row."""
+def _disable_motors(body: Body) -> None:
+    """Disable the motors that createMultiBody sets on axes without a row and on ball joints."""
     with_row = {axis.index for axis in body.axes}
     ball_joints = {ball.index for ball in body.ball_joints}
     for index in range(pybullet.getNumJoints(body.uid)):
@@ -98,8 +102,8 @@ def _free(body: Body) -> None:
             pybullet.setJointMotorControl2(body.uid, index, pybullet.VELOCITY_CONTROL, force=0.0)
 
 
-def _limit(body: Body, axis: Axis, spec: JointAxis, mass: float) -> None:
-    """Set the limits of an axis; a missing one is far away: PyBullet requires both or none."""
+def _set_limits(body: Body, axis: Axis, spec: JointAxis, mass: float) -> None:
+    """Set the limits of an axis. PyBullet requires both or none, so a missing one is far away."""
     lower, upper = spec.lower, spec.upper
     axis.lower, axis.upper = (lower, upper) if lower <= upper else (-math.inf, math.inf)
     if lower <= -INFINITE and upper >= INFINITE:

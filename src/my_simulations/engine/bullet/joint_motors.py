@@ -1,4 +1,4 @@
-"""Motors of joint axes: a rate, and the largest effort for it (ODE's `vel` and `fmax`)."""
+"""Set motors of joint axes: a target rate and the largest effort (ODE's `vel` and `fmax`)."""
 from __future__ import annotations
 
 from typing import Callable, Dict, Iterable, List, Mapping, Optional, Sequence, Set, Tuple
@@ -16,7 +16,7 @@ from .joint_axes import specs_of
 class JointMotors(BodyObserver):
     """Sets PyBullet's velocity motors; on axes without a motor they represent joint friction.
 
-    A body with axes never sleeps, nor does what touches it. So nothing is woken for its motors.
+    A body with axes never sleeps, nor do bodies that touch it. So motors need not wake any.
 
     Args:
         axes: joint rows to bodies and their axes.
@@ -29,7 +29,8 @@ class JointMotors(BodyObserver):
         self._notify = notify
         self._motors: Dict[int, JointMotor] = {}
         self._specs: Dict[int, JointAxis] = {}
-        self._driven: Dict[int, Tuple[float, float]] = {}  # rates other than 0 now, and efforts
+        # Rates other than 0 and efforts of motors, as set in PyBullet.
+        self._driven: Dict[int, Tuple[float, float]] = {}
         self._efforts: Dict[int, float] = {}
         self._loop_rows: Set[int] = set()
 
@@ -42,22 +43,22 @@ class JointMotors(BodyObserver):
                 self.restore(body, [axis])
 
     def rate_of(self, row: int) -> float:
-        """The rate to which an axis is driven, rad/s or m/s; 0 also for one that is not."""
+        """Return the rate to which a motor drives an axis, rad/s or m/s; 0 without a motor."""
         return self._driven.get(row, (0.0, 0.0))[0]
 
     def effort_of(self, row: int) -> float:
-        """The most effort of the motor, or of the friction, of an axis, N m or N."""
+        """Return the largest effort of the motor, or of the friction, of an axis, N m or N."""
         return self._efforts.get(row, 0.0)
 
-    def driven(self, row: int) -> Optional[Tuple[float, float]]:
-        """The rate to which an axis is driven, rad/s or m/s, and the most effort, N m or N.
+    def motor_of(self, row: int) -> Optional[Tuple[float, float]]:
+        """Return the rate to which a motor drives an axis, rad/s or m/s, and its largest effort.
 
-        None for one that is not driven, or to a rate of 0.
+        None without a motor, or for a rate of 0. The effort is in N m or N.
         """
         return self._driven.get(row)
 
     def set(self, motors: Iterable[JointMotor]) -> None:
-        """Set these motors; others stay. Raises CommandRefusedError before any motor is set."""
+        """Set some motors; others stay. Raises CommandRefusedError before any motor is set."""
         changed = list(motors)
         for motor in changed:
             if motor.row not in self._axes:
@@ -79,7 +80,7 @@ class JointMotors(BodyObserver):
             if axis.row in self._motors:
                 self.restore(body, [axis])
             else:
-                self._note(axis.row, spec.motor_rate, spec.friction)
+                self._store_target(axis.row, spec.motor_rate, spec.friction)
 
     def forget(self, body: Body) -> None:
         for axis in body.axes:
@@ -96,17 +97,17 @@ class JointMotors(BodyObserver):
             targetVelocities=[rate for rate, _ in targets],
             forces=[effort for _, effort in targets])
         for axis, target in zip(axes, targets):
-            self._note(axis.row, *target)
+            self._store_target(axis.row, *target)
 
     def _target_of(self, row: int) -> Tuple[float, float]:
-        """The rate of the motor or friction of an axis, rad/s or m/s, and its most effort."""
+        """Return the rate of the motor or friction of an axis, rad/s or m/s, and its effort."""
         motor = self._motors.get(row)
         if motor is not None and motor.effort > 0.0 and row not in self._loop_rows:
             return motor.rate, motor.effort
         spec = self._specs.get(row) or JointAxis()
         return spec.motor_rate, max(0.0, spec.friction)
 
-    def _note(self, row: int, rate: float, effort: float) -> None:
+    def _store_target(self, row: int, rate: float, effort: float) -> None:
         self._efforts[row] = effort
         self._driven.pop(row, None)
         if rate and effort > 0.0:
