@@ -67,11 +67,11 @@ def tree(rng: random.Random) -> int:
 def test_its_inverse_is_what_an_effort_accelerates(bullet, seed):
     uid = tree(random.Random(seed))
     matrix = MassMatrix(uid)
-    index, place = list(matrix.places.items())[-1]
-    expected = np.linalg.inv(matrix.now())[:, place]
+    index, place = list(matrix.columns.items())[-1]
+    expected = np.linalg.inv(matrix.compute())[:, place]
     pybullet.setJointMotorControl2(uid, index, pybullet.TORQUE_CONTROL, force=1.0)
     pybullet.stepSimulation()
-    for joint, row in matrix.places.items():
+    for joint, row in matrix.columns.items():
         assert pybullet.getJointState(uid, joint)[1] / DT == pytest.approx(
             expected[row], abs=1e-3 * abs(expected).max())
 
@@ -142,10 +142,10 @@ def _on_wheel(centre: "tuple[float, float, float]", moments: "tuple[float, float
     ((0.0, 0.0, 0.0), (2e-4, 3e-4, 2.1e-4), False)], ids=["round", "eccentric", "oval"])
 def test_what_turns_without_changing_the_matrix(bullet, centre, moments, balanced):
     tree = _on_wheel(centre, moments)
-    assert tree.balanced() == ({0} if balanced else set())
-    assert tree.changes_only_by(tree.balanced()) == balanced
+    assert tree.wheels() == ({0} if balanced else set())
+    assert tree.moves_only_by(tree.wheels()) == balanced
     seen = []
     for angle in (0.0, 0.7):
         pybullet.resetJointState(tree._uid, 0, angle)
-        seen.append(tree.now())
+        seen.append(tree.compute())
     assert np.allclose(*seen, rtol=1e-9, atol=1e-12) == balanced

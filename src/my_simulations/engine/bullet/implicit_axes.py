@@ -35,15 +35,15 @@ from .bodies import Axis, Body
 from .mass_matrix import MassMatrix
 from .step_helper import next_multiple
 
-_TRUST = 0.5       # weight of the newest estimate of the acceleration by other forces
-_FAR = 0.05        # rad or m: after this motion of an axis the mobility is recomputed
-_EVERY = 100       # steps after which it is recomputed anyway, as other axes can change it
-_STIFF = 10.0      # s is this times the spring's (w dt)^2, at most 1
-_MOST_DECAYS = 50.0
-_AT_RATE = 0.02    # of the rate of a motor: within it, the motor keeps the rate
-_SLIGHT = 5e-3     # of a motor's largest effort: a damper below it does not matter
-_WEAK = 0.05       # of a motor's largest effort: a damper below it can use an old mobility
-_CHECKED = 8       # steps between two checks whether motors still cancel all dampers
+_NEWEST_WEIGHT = 0.5  # weight of the newest estimate of the acceleration by other forces
+_MOST_MOTION = 0.05   # rad or m of an axis until the mobility is computed again
+_MOST_AGE = 100       # steps until it is computed again anyway: other axes can change it
+_STIFF = 10.0         # s is this times (w dt)^2 of the spring with angular frequency w, at most 1
+_MOST_DECAYS = 50.0   # of x: e^x must be finite
+_AT_RATE = 0.02       # of the rate of a motor: within it, the motor keeps the rate
+_NEGLIGIBLE = 5e-3    # of a motor's largest effort: a damper below it does not matter
+_WEAK = 0.05          # of a motor's largest effort: a damper below it can use an old mobility
+_CHECK_EVERY = 8      # steps between two checks whether motors still cancel all dampers
 
 Motor = Optional[Tuple[float, float]]
 """The rate of a motor, rad/s or m/s, and its largest effort, N m or N; None without a motor."""
@@ -79,8 +79,9 @@ class ImplicitAxes:
     """The springs and dampers of some axes of one body.
 
     Attributes:
-        has_springs: whether there are springs among them.
-        is_cancelled: motors cancelled all dampers at the last check, and have the same targets.
+        has_springs: whether any axis has a spring.
+        is_cancelled: whether motors cancelled all dampers at the last check; a new target of a
+            motor sets it to False.
     """
 
     def __init__(self, body: Body, axes: List[Axis], specs: List[JointAxis], dt: float) -> None:
@@ -92,22 +93,22 @@ class ImplicitAxes:
         self._stiffness = np.array([spec.spring_stiffness for spec in specs])
         self._reference = np.array([spec.spring_reference for spec in specs])
         self.has_springs = bool(self._stiffness.any())
-        self._others = 1.0 - _TRUST, _TRUST / dt, _TRUST
-        self._tree: Optional[MassMatrix] = None
+        self._smoothing = 1.0 - _NEWEST_WEIGHT, _NEWEST_WEIGHT / dt, _NEWEST_WEIGHT
+        self._mass_matrix: Optional[MassMatrix] = None
         self._mobility = np.eye(len(self._rows))
-        self._tells: List[int] = []               # axes whose position changes the mobility
-        self._constant = False                    # no joint of the body does
-        self._prepared_at: Optional[List[float]] = None
-        self._age = 0
+        self._mobility_axes: List[int] = []   # axes whose position changes the mobility
+        self._is_mobility_constant = False    # no joint of the body changes it
+        self._prepared_at: Optional[List[float]] = None   # positions for which it was computed
+        self._mobility_age = 0
         self.reset_after_jump()
 
     def reset_after_jump(self) -> None:
         """Discard the estimates after the joints were set."""
-        self._other = [0.0] * len(self._rows)
+        self._other_accelerations = [0.0] * len(self._rows)
         self._rates: Optional[List[float]] = None
-        self._given: List[float] = []
+        self._own_accelerations: List[float] = []
         self._efforts = [0.0] * len(self._rows)
-        self._spent: Optional[List[float]] = None   # by motors, read before a save
+        self._motor_efforts: Optional[List[float]] = None   # of the last step, from a saved state
         self.is_cancelled = False
         self._motors: List[Motor] = []
         self._bounds: List[_Bounds] = []            # for these motors
@@ -120,21 +121,21 @@ class ImplicitAxes:
     def memory(self) -> DamperMemory:
         """The state of the estimates, for `resume`."""
         states = pybullet.getJointStates(self._body.uid, self._indices)
-        return DamperMemory(tuple(self._other), None if self._rates is None else tuple(self._rates),
-                            tuple(self._given), tuple(self._efforts),
-                            tuple(self._spent or [state[3] for state in states]),
-                            self.is_cancelled)
+        return DamperMemory(
+            tuple(self._other_accelerations), None if self._rates is None else tuple(self._rates),
+            tuple(self._own_accelerations), tuple(self._efforts),
+            tuple(self._motor_efforts or [state[3] for state in states]), self.is_cancelled)
 
     def resume(self, memory: DamperMemory) -> None:
         """Continue from a saved state."""
-        self._other, self._given = list(memory.other), list(memory.given)
+        self._other_accelerations, self._own_accelerations = list(memory.other), list(memory.given)
         self._rates = None if memory.rates is None else list(memory.rates)
-        self._efforts, self._spent = list(memory.efforts), list(memory.spent)
+        self._efforts, self._motor_efforts = list(memory.efforts), list(memory.spent)
         self.is_cancelled = memory.cancelled
 
     def due(self, step: int) -> int:
         """Return the first step, `step` or later, in which `add_to` must be called."""
-        return next_multiple(step, _CHECKED) if self.is_cancelled else step
+        return next_multiple(step, _CHECK_EVERY) if self.is_cancelled else step
 
     def add_to(self, efforts: Dict[int, float], motor_of: Callable[[int], Motor]) -> None:
         """Add the efforts of the next step, N m or N by row, to the other efforts.
@@ -143,41 +144,43 @@ class ImplicitAxes:
         """
         states = pybullet.getJointStates(self._body.uid, self._indices)
         rates = [state[1] for state in states]
-        # What motors spent in the last step, in which the dampers had `_efforts`.
-        spent, self._spent = self._spent or [state[3] for state in states], None
+        # Efforts of motors in the last step, in which the dampers had `_efforts`.
+        motor_efforts = self._motor_efforts or [state[3] for state in states]
+        self._motor_efforts = None
         motors = [motor_of(row) for row in self._rows]
         if motors != self._motors:
             self._motors, self._bounds = motors, self._bounds_of(motors)
         cancelled = [n for n, bounds in enumerate(self._bounds)
-                     if bounds.cancels(rates[n], spent[n] + self._efforts[n])]
-        self.is_cancelled = all(n in cancelled or bounds.is_below(_SLIGHT, rates[n])
+                     if bounds.cancels(rates[n], motor_efforts[n] + self._efforts[n])]
+        self.is_cancelled = all(n in cancelled or bounds.is_below(_NEGLIGIBLE, rates[n])
                                 for n, bounds in enumerate(self._bounds))
         if self.is_cancelled:
-            self._rates, self._efforts = None, [0.0] * len(rates)   # the estimate begins again
+            self._rates, self._efforts = None, [0.0] * len(rates)   # the estimate starts again
             return
         positions = [state[0] for state in states]
         if self._rates is not None:
-            # Acceleration by all other forces: (w - w_before) / dt - given, smoothed.
-            kept, per_rate, trust = self._others
-            self._other = [kept * other + per_rate * (rate - before) - trust * given
-                           for other, rate, before, given in zip(
-                               self._other, rates, self._rates, self._given)]
+            # Acceleration by all other forces: (w - w_before) / dt - own, exponentially smoothed.
+            kept, per_rate, newest = self._smoothing
+            self._other_accelerations = [
+                kept * other + per_rate * (rate - before) - newest * own
+                for other, rate, before, own in zip(
+                    self._other_accelerations, rates, self._rates, self._own_accelerations)]
         if self._prepared_at is None or not all(
                 n in cancelled or bounds.is_below(_WEAK, rates[n])
                 for n, bounds in enumerate(self._bounds)):
-            self._prepare_again(positions)
+            self._update_mobility(positions)
         known = [efforts.get(row, 0.0) for row in self._rows]
-        answer = (self._answer @ np.array(rates + positions + self._other + known)
-                  + self._at_rest).tolist()
-        if not math.isfinite(sum(answer)):
+        state = rates + positions + self._other_accelerations + known
+        result = (self._step_matrix @ np.array(state) + self._step_constant).tolist()
+        if not math.isfinite(sum(result)):
             self.reset_after_jump()
             return
-        self._rates, self._given = rates, answer[len(rates):]
-        self._efforts = answer[:len(rates)]
+        self._rates, self._own_accelerations = rates, result[len(rates):]
+        self._efforts = result[:len(rates)]
         if cancelled:
             for n in cancelled:
                 self._efforts[n] = 0.0
-            self._given = (self._mobility @ np.add(self._efforts, known)).tolist()
+            self._own_accelerations = (self._mobility @ np.add(self._efforts, known)).tolist()
         for row, before, effort in zip(self._rows, known, self._efforts):
             efforts[row] = before + effort
 
@@ -193,30 +196,31 @@ class ImplicitAxes:
                                  _AT_RATE * abs(target), damping * target, most))
         return found
 
-    def _prepare_again(self, positions: List[float]) -> None:
+    def _update_mobility(self, positions: List[float]) -> None:
         """Recompute the mobility if it may have changed; turning wheels do not change it."""
         before = self._prepared_at
-        if before is not None and self._constant:
+        if before is not None and self._is_mobility_constant:
             return
-        self._age += 1
-        if before is None or self._age >= _EVERY or any(
-                abs(positions[n] - before[n]) > _FAR for n in self._tells):
-            self._prepared_at, self._age = positions, 0
-            self._prepare()
+        self._mobility_age += 1
+        if before is None or self._mobility_age >= _MOST_AGE or any(
+                abs(positions[n] - before[n]) > _MOST_MOTION for n in self._mobility_axes):
+            self._prepared_at, self._mobility_age = positions, 0
+            self._compute_step()
 
-    def _prepare(self) -> None:
-        """Compute `_answer` and `_at_rest`: the linear map of a step, and its constant part.
+    def _compute_step(self) -> None:
+        """Compute `_step_matrix` and `_step_constant`: a step is an affine map.
 
         Input: rates, positions, other accelerations, known efforts. Output: efforts of springs and
         dampers, and the accelerations that these and the known efforts give.
         """
         dt, count = self._dt, len(self._rows)
-        if self._tree is None:
-            self._tree = MassMatrix(self._body.uid)
-            balanced = self._tree.balanced()
-            self._tells = [n for n, index in enumerate(self._indices) if index not in balanced]
-            self._constant = self._tree.changes_only_by(balanced)
-        matrix = self._mobility = mobility(self._tree, self._indices)
+        if self._mass_matrix is None:
+            self._mass_matrix = MassMatrix(self._body.uid)
+            wheels = self._mass_matrix.wheels()
+            self._mobility_axes = [n for n, index in enumerate(self._indices)
+                                   if index not in wheels]
+            self._is_mobility_constant = self._mass_matrix.moves_only_by(wheels)
+        matrix = self._mobility = mobility(self._mass_matrix, self._indices)
         one = np.eye(count)
         decays = np.minimum(dt * np.diag(matrix) * self._damping, _MOST_DECAYS)
         spread = np.where(decays > 1e-9, np.expm1(decays) / np.maximum(decays, 1e-9), 1.0)
@@ -230,9 +234,9 @@ class ImplicitAxes:
         given = own.copy()
         given[:, 3 * count:] += matrix
         inertia = _inverse(matrix)
-        self._answer = np.vstack([inertia @ own, given])
-        self._at_rest = np.concatenate([inertia @ (-pull @ self._reference),
-                                        -pull @ self._reference])
+        self._step_matrix = np.vstack([inertia @ own, given])
+        self._step_constant = np.concatenate([inertia @ (-pull @ self._reference),
+                                              -pull @ self._reference])
 
 
 def mobility(tree: MassMatrix, indices: List[int]) -> np.ndarray:
@@ -240,15 +244,15 @@ def mobility(tree: MassMatrix, indices: List[int]) -> np.ndarray:
 
     (n, n), 1/kg or 1/(kg m^2), in the present configuration.
     """
-    mass = tree.now()
+    mass = tree.compute()
     if not np.isfinite(mass).all():  # it has diverged; the next check restores it
         return np.eye(len(indices))
     # An axis with equal limits is welded and does not move.
-    moving = [n for n, index in enumerate(indices) if index in tree.places]
-    chosen = [tree.places[indices[n]] for n in moving]
-    answer = np.zeros((len(indices), len(indices)))
-    answer[np.ix_(moving, moving)] = _inverse(mass)[np.ix_(chosen, chosen)]
-    return answer
+    moving = [n for n, index in enumerate(indices) if index in tree.columns]
+    chosen = [tree.columns[indices[n]] for n in moving]
+    result = np.zeros((len(indices), len(indices)))
+    result[np.ix_(moving, moving)] = _inverse(mass)[np.ix_(chosen, chosen)]
+    return result
 
 
 def _inverse(matrix: np.ndarray) -> np.ndarray:

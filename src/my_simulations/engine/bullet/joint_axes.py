@@ -80,9 +80,9 @@ def _wheel_dampers(body: Body, found: List[Tuple[Axis, JointAxis]],
             _is_explicit(spec, axis, dt, _EXPLICIT_DAMPING) for axis, spec in damped):
         return {}
     tree = MassMatrix(body.uid)
-    wheels = tree.balanced()
+    wheels = tree.wheels()
     indices = [axis.index for axis, _ in damped]
-    if not wheels.issuperset(indices) or not tree.changes_only_by(wheels):
+    if not wheels.issuperset(indices) or not tree.moves_only_by(wheels):
         return {}
     decays = dt * np.diag(mobility(tree, indices)) * [spec.damping for _, spec in damped]
     return {index: float(spec.damping * -np.expm1(-decay) / decay)

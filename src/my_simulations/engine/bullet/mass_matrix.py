@@ -18,20 +18,20 @@ import pybullet
 from .link_states import hung_states
 
 _CENTRED = 1e-7  # m: a centre of mass closer to the axis counts as on it
-_ROUND = 1e-6    # share by which moments of what is round may differ
+_ROUND = 1e-6    # relative difference below which moments count as equal
 
-_AXES = {pybullet.JOINT_REVOLUTE: True, pybullet.JOINT_PRISMATIC: False}  # kind: it turns
+_TURNS = {pybullet.JOINT_REVOLUTE: True, pybullet.JOINT_PRISMATIC: False}
 
 
 class MassMatrix:
-    """The masses and freedoms of one body, as they are now; the configuration may change.
+    """Computes the mass matrix of one body in its present configuration.
 
-    Freedoms stand in this order: three turns and three shifts of a base that can move, then the
-    axes by joint index, three for a ball joint.
+    The degrees of freedom are in this order: three rotations and three translations of a base that
+    can move, then the axes by joint index, three for a ball joint.
 
     Attributes:
-        places: where the axis of a joint index stands among the freedoms.
-        count: the number of freedoms.
+        columns: the columns of the joint axes in the matrix, by joint index.
+        count: the number of degrees of freedom.
     """
 
     def __init__(self, uid: int) -> None:
@@ -42,16 +42,16 @@ class MassMatrix:
         self._links = list(range(count))
         self._masses = np.array([entry[0] for entry in dynamics])
         self._moments = np.array([entry[2] for entry in dynamics])
-        self.places: Dict[int, int] = {}
-        owners, turns, local = [], [], []   # freedom: link number from the base on, turning, axis
+        self.columns: Dict[int, int] = {}
+        owners, turns, local = [], [], []   # of degrees of freedom: link (0: base), turning, axis
         if self._masses[0] > 0.0:
             owners, turns = [0] * 6, [True] * 3 + [False] * 3
             local = np.tile(np.eye(3), (2, 1)).tolist()
         for index, info in enumerate(infos):
-            if info[2] in _AXES:
-                self.places[index] = len(owners)
+            if info[2] in _TURNS:
+                self.columns[index] = len(owners)
                 owners.append(index + 1)
-                turns.append(_AXES[info[2]])
+                turns.append(_TURNS[info[2]])
                 local.append(info[13])
             elif info[2] == pybullet.JOINT_SPHERICAL:
                 owners += [index + 1] * 3
@@ -61,12 +61,12 @@ class MassMatrix:
         self._owners = np.array(owners, dtype=int)
         self._turns = np.array(turns, dtype=bool)
         self._local = np.array(local).reshape(-1, 3)
-        self._hangs = _descent([info[16] for info in infos])
-        self._moves = self._hangs[:, self._owners]
+        self._descendants = _descendants([info[16] for info in infos])
+        self._moves = self._descendants[:, self._owners]
 
-    def now(self) -> np.ndarray:
-        """The matrix in the present configuration: (count, count), kg, kg m or kg m^2."""
-        centres, pivots, turned = self._where()
+    def compute(self) -> np.ndarray:
+        """Return the matrix in the present configuration: (count, count), kg, kg m or kg m^2."""
+        centres, pivots, turned = self._kinematics()
         axes = np.einsum("fij,fj->fi", turned[self._owners], self._local)
         lever = centres[:, None, :] - pivots[self._owners][None, :, :]
         shifts = np.where(self._turns[None, :, None], np.cross(axes[None], lever), axes[None])
@@ -79,8 +79,13 @@ class MassMatrix:
         return matrix
 
     def jacobian(self, index: int, point: np.ndarray) -> np.ndarray:
-        """Return the velocity of a point of a link, by its index, by each freedom: (3, count)."""
-        _, pivots, turned = self._where()
+        """Return the velocity of a point of a link per rate of each degree of freedom: (3, count).
+
+        Args:
+            index: PyBullet's index of the link.
+            point: world axes, m.
+        """
+        _, pivots, turned = self._kinematics()
         axes = np.einsum("fij,fj->fi", turned[self._owners], self._local)
         lever = np.array(point) - pivots[self._owners]
         moved = np.where(self._turns[:, None], np.cross(axes, lever), axes)
@@ -89,21 +94,21 @@ class MassMatrix:
 
     def centre(self) -> np.ndarray:
         """Return the centre of mass of the body, m; world axes."""
-        found: np.ndarray = self._masses @ self._where()[0] / self._masses.sum()
+        found: np.ndarray = self._masses @ self._kinematics()[0] / self._masses.sum()
         return found
 
-    def balanced(self) -> Set[int]:
-        """Indices of the axes that turn, alone, a link that is round about them, such as a wheel.
+    def wheels(self) -> Set[int]:
+        """Return the joint indices of wheels: links without children, symmetric about the axis.
 
-        Their angle does not change the matrix, seen from the link that carries them.
+        The angle of a wheel does not change the matrix, seen from the parent of the wheel.
         """
-        centres, pivots, turned = self._where()
+        centres, pivots, turned = self._kinematics()
         found: Set[int] = set()
-        for index, place in self.places.items():
+        for index, column in self.columns.items():
             owner = index + 1
-            alone = int(self._hangs[:, owner].sum()) == 1 and int(
+            alone = int(self._descendants[:, owner].sum()) == 1 and int(
                 (self._owners == owner).sum()) == 1
-            local = self._local[place]
+            local = self._local[column]
             along = turned[owner] @ local
             lever = np.cross(centres[owner] - pivots[owner], along)
             tensor = np.diag(self._moments[owner])
@@ -111,18 +116,18 @@ class MassMatrix:
             # Round about the axis: I = b 1 + (a - b) u u^T.
             across = (float(np.trace(tensor)) - about) / 2.0
             rest = tensor - across * np.eye(3) - (about - across) * np.outer(local, local)
-            if (self._turns[place] and alone and float(np.abs(lever).max()) < _CENTRED
+            if (self._turns[column] and alone and float(np.abs(lever).max()) < _CENTRED
                     and float(np.abs(rest).max()) <= _ROUND * across):
                 found.add(index)
         return found
 
-    def changes_only_by(self, axes: Set[int]) -> bool:
-        """Whether the body has no freedoms but these axes and those of its base."""
+    def moves_only_by(self, axes: Set[int]) -> bool:
+        """Whether the body has no degrees of freedom but these axes and those of its base."""
         base = 6 if self._masses[0] > 0.0 else 0
         return self.count == base + len(axes)
 
-    def _where(self) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of the base and each link: centre of mass, pivot, rotation of the principal axes."""
+    def _kinematics(self) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return centre of mass, pivot and rotation of the principal axes of the base and links."""
         position, turn = pybullet.getBasePositionAndOrientation(self._uid)
         centres, pivots, quaternions = [position], [position], [turn]
         for state in hung_states(self._uid, self._links, velocities=0):
@@ -132,18 +137,22 @@ class MassMatrix:
         return np.array(centres), np.array(pivots), _rotations(np.array(quaternions))
 
 
-def _descent(parents: List[int]) -> np.ndarray:
-    """(k, i): whether link k hangs on link i or is it; 0 is the base. Parents come first."""
+def _descendants(parents: List[int]) -> np.ndarray:
+    """Return a matrix (k, i): whether link k is link i or its descendant; 0 is the base.
+
+    Args:
+        parents: of the links other than the base; each index is higher than that of its parent.
+    """
     count = len(parents) + 1
-    hangs = np.eye(count, dtype=bool)
-    hangs[:, 0] = True
+    is_descendant = np.eye(count, dtype=bool)
+    is_descendant[:, 0] = True
     for index, parent in enumerate(parents):
-        hangs[index + 1] |= hangs[parent + 1]
-    return hangs
+        is_descendant[index + 1] |= is_descendant[parent + 1]
+    return is_descendant
 
 
 def _rotations(q: np.ndarray) -> np.ndarray:
-    """(n, 3, 3) of unit quaternions (n, 4), x y z w."""
+    """Return rotation matrices (n, 3, 3) of unit quaternions (n, 4), x y z w."""
     x, y, z, w = q.T
     return np.array([
         [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],

@@ -133,7 +133,7 @@ def contact_mobility(link: SurfaceLink, contact: ContactPoint, holds: Callable[[
     brake of a joint row, at a distance, m, from the contact, holds against the friction.
     """
     matrix = MassMatrix(link.uid)
-    masses, index = matrix.now(), link.part.index
+    masses, index = matrix.compute(), link.part.index
     at, normal = np.array(contact[POINT]), np.array(contact[NORMAL])
     along = direction_across(contact[NORMAL])
     surface = np.array((along, cross(contact[NORMAL], along)))
@@ -152,7 +152,7 @@ def contact_mobility(link: SurfaceLink, contact: ContactPoint, holds: Callable[[
         rigid = max(most(at - arm + high, list(range(base))), float(
             turning * ((arm - high) @ (arm - high))))
     moved = matrix.jacobian(index, at)
-    free = [place for axis in link.body.axes for place in (matrix.places.get(axis.index),)
+    free = [place for axis in link.body.axes for place in (matrix.columns.get(axis.index),)
             if place is not None and moved[:, place].any()
             and not (link.hinge is not None and axis.index == index)
             and not holds(axis.row, float(np.linalg.norm(moved[:, place])))]
