@@ -262,7 +262,7 @@ class ReadJointWrenches(Command):
     """What joints transmitted in the last step.
 
     A joint is measured from the step after its first reading on, until it was not read for
-    `joint_wrenches.FORGOTTEN` steps. To get every value, read it once in advance.
+    `joint_wrenches.MEASURED_STEPS` steps. To get every value, read it once in advance.
 
     Reply value: a tuple with a `JointWrench` for each joint; None for one that was not measured in
     the last step (read for the first time, or since then everything began anew) or is not there.

@@ -225,10 +225,10 @@ class Builder:
 
     def _tree(self, plan: BodyPlan, meshes: MeshTable) -> _Tree:
         offset = 0 if plan.fixed_base else 1
-        hung = plan.links[offset:]
+        children = plan.links[offset:]
         masses = tuple(self._masses(plan, n) for n in range(len(plan.links)))
         coms = [compose(inverse(node.link_from_frame), each.com)
-                for node, each in zip(hung, masses[offset:])]
+                for node, each in zip(children, masses[offset:])]
         base = _FIXED if plan.fixed_base else masses[0]
         at = IDENTITY if plan.fixed_base else self._model.links[plan.links[0].index].pose
         return _Tree(plan, masses, tuple(self._tree_shape(node, meshes) for node in plan.links),
@@ -237,14 +237,14 @@ class Builder:
             "baseInertialFramePosition": base.com.position,
             "baseInertialFrameOrientation": base.com.orientation,
             "linkMasses": [each.mass for each in masses[offset:]],
-            "linkPositions": [node.parent_from_frame.position for node in hung],
-            "linkOrientations": [node.parent_from_frame.orientation for node in hung],
+            "linkPositions": [node.parent_from_frame.position for node in children],
+            "linkOrientations": [node.parent_from_frame.orientation for node in children],
             "linkInertialFramePositions": [com.position for com in coms],
             "linkInertialFrameOrientations": [com.orientation for com in coms],
             "linkParentIndices": [node.parent + 1 - offset if node.parent >= 0 else 0
-                                  for node in hung],
-            "linkJointTypes": [_JOINT_TYPES[node.kind] for node in hung],
-            "linkJointAxis": [node.axis or (0.0, 0.0, 1.0) for node in hung],
+                                  for node in children],
+            "linkJointTypes": [_JOINT_TYPES[node.kind] for node in children],
+            "linkJointAxis": [node.axis or (0.0, 0.0, 1.0) for node in children],
             "flags": (pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_PARENT
                       | pybullet.URDF_USE_SELF_COLLISION) if self._collide(plan) else 0})
 
@@ -282,12 +282,12 @@ class Builder:
     def _build_tree(self, tree: _Tree, pose: Pose) -> Body:
         fixed, unseen = tree.plan.fixed_base, self._shapes.unseen
         shapes = [-1 if recipe is None else self._shapes.take(recipe) for recipe in tree.shapes]
-        base_shape, hung = (-1, shapes) if fixed else (shapes[0], shapes[1:])
+        base_shape, children = (-1, shapes) if fixed else (shapes[0], shapes[1:])
         at = compose(pose, tree.model_from_base)
         uid = pybullet.createMultiBody(
             baseCollisionShapeIndex=base_shape, baseVisualShapeIndex=unseen,
             basePosition=at.position, baseOrientation=at.orientation,
-            linkCollisionShapeIndices=hung, linkVisualShapeIndices=[unseen] * len(hung),
+            linkCollisionShapeIndices=children, linkVisualShapeIndices=[unseen] * len(children),
             **tree.arguments)
         body = self._finish_tree(uid, tree)
         body.shapes = tuple((recipe, shape) for recipe, shape in zip(tree.shapes, shapes)

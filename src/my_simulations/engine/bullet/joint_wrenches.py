@@ -48,17 +48,17 @@ from .link_states import AT_REST, Motion, link_motions
 from .state_restore import Entry
 from .wheel_friction import WheelFriction
 
-FORGOTTEN = 100_000
+MEASURED_STEPS = 100_000
 """Steps without a reading after which a joint is no longer measured."""
 
 JointKey = Tuple[int, str]
 """The number of a model, and the name of one of its joints."""
 
 
-_Chain = Tuple[Tuple[Part, Optional[Part], Vec3], ...]
-"""The links of a body, parents first: each with its parent and the joint between them.
+_Links = Tuple[Tuple[Part, Optional[Part], Vec3], ...]
+"""The links of a body, parents first: each with its parent and the position of its joint.
 
-The joint is a point relative to the link's centre of mass, in its principal axes. The parent of
+The position is relative to the link's centre of mass, in its principal axes, m. The parent of
 a root, and of the first links on a fixed base, is None.
 """
 
@@ -71,39 +71,40 @@ class _Acceleration(NamedTuple):
 
 
 @dataclass(frozen=True)
-class _Cut:
+class _MeasuredJoint:
     """A joint, and its outboard links.
 
     Attributes:
         body: the body that the joint is in.
-        chain: its links.
-        joint: its description.
+        links: the links of the body.
+        joint: the description of the joint.
         child, parent: the parts at its ends; None for the world.
-        hung: the parts of its outboard links, the link at the joint first.
+        outboard: the parts of its outboard links, the link at the joint first.
         parent_from_joint: its frame at position 0; used if the child is the world.
     """
 
     body: Body
-    chain: _Chain
+    links: _Links
     joint: Joint
     child: Optional[Part]
     parent: Optional[Part]
-    hung: List[Part]
+    outboard: List[Part]
     parent_from_joint: Pose
 
 
 @dataclass
-class _Seen:
+class _BodyStates:
     """The state of a body before and after a step.
 
     Attributes:
-        before, after: states of its links; Bullet keeps its contact forces until the next step.
-        outside: forces on it, besides gravity; those that Bullet reports are added when needed.
+        before, after: motions of its links, by PyBullet's index.
+        outside: forces on it, except gravity. Forces that Bullet reports are added at the first
+            reading: Bullet keeps them until the next step.
         accelerations: of its links; computed when needed.
     """
 
     body: Body
-    chain: _Chain
+    links: _Links
     before: Dict[int, Motion]
     after: Dict[int, Motion]
     outside: Acting
@@ -114,7 +115,7 @@ class _Seen:
         if self.accelerations is None:
             note_contacts(self.outside, self.body)
             note_constraints(self.outside, self.body, self.before)
-            self.accelerations = _accelerations(self.chain, self.before, self.after, dt)
+            self.accelerations = _accelerations(self.links, self.before, self.after, dt)
         return self.accelerations
 
 
@@ -122,95 +123,97 @@ class JointWrenches(BodyObserver):
     """Measures the joints whose wrenches are read."""
 
     def __init__(self, models: Mapping[int, Entry], forces: Forces, friction: WheelFriction,
-                 wanted: Dict[JointKey, int]) -> None:
-        """`wanted`: the measured joints, and for how many more steps; kept by a reset."""
+                 steps_left: Dict[JointKey, int]) -> None:
+        """`steps_left`: for how many more steps each joint is measured; a reset keeps it."""
         self._models = models
         self._forces = forces
         self._friction = friction
-        self._cuts: Dict[JointKey, _Cut] = {}
-        self._wanted = wanted
-        self._seen: Dict[int, _Seen] = {}
-        self._found: Dict[JointKey, Optional[JointWrench]] = {}
+        self._joints: Dict[JointKey, _MeasuredJoint] = {}
+        self._steps_left = steps_left
+        self._states: Dict[int, _BodyStates] = {}
+        self._wrenches: Dict[JointKey, Optional[JointWrench]] = {}
         self._dt = 0.0
         self._gravity = ZERO3
 
     @property
     def idle(self) -> bool:
         """True if no joint is measured."""
-        return not self._wanted
+        return not self._steps_left
 
     def read(self, command: ReadJointWrenches) -> Tuple[Optional[JointWrench], ...]:
         """Return the wrenches of the last step, and measure these joints in the next steps."""
         for key in command.joints:
-            self._wanted[key] = FORGOTTEN
-            cut = self._cuts.get(key)
-            if key not in self._found and cut is not None and cut.body.uid in self._seen:
-                self._found[key] = self._wrench(cut, self._seen[cut.body.uid])
-            elif key[0] in self._models and cut is None:
-                self._found[key] = _without_a_cut(self._models[key[0]], key[1])
-        return tuple(self._found.get(key) for key in command.joints)
+            self._steps_left[key] = MEASURED_STEPS
+            measured = self._joints.get(key)
+            states = None if measured is None else self._states.get(measured.body.uid)
+            if key not in self._wrenches and measured is not None and states is not None:
+                self._wrenches[key] = self._wrench(measured, states)
+            elif key[0] in self._models and measured is None:
+                self._wrenches[key] = _wrench_without_links(self._models[key[0]], key[1])
+        return tuple(self._wrenches.get(key) for key in command.joints)
 
     def forget(self, body: Body) -> None:
-        for table in (self._cuts, self._wanted, self._found):
+        for table in (self._joints, self._steps_left, self._wrenches):
             for key in [key for key in table if key[0] == body.model_id]:
                 del table[key]
-        self._seen.pop(body.uid, None)
+        self._states.pop(body.uid, None)
 
     # -- a step ------------------------------------------------------------------------------------
 
     def before(self, steps: int) -> None:
         """Record the states before the last of `steps` steps, before any helper acts."""
-        for key in list(self._wanted):
-            self._wanted[key] -= steps
-            cut = self._cuts.get(key) or self._cut(key)
-            if cut is None or self._wanted[key] < 0:
-                del self._wanted[key]
-                self._cuts.pop(key, None)
+        for key in list(self._steps_left):
+            self._steps_left[key] -= steps
+            measured = self._joints.get(key) or self._find_joint(key)
+            if measured is None or self._steps_left[key] < 0:
+                del self._steps_left[key]
+                self._joints.pop(key, None)
             else:
-                self._cuts[key] = cut
-        self._found.clear()
-        self._seen.clear()
-        for cut in self._cuts.values():
-            if cut.body.uid not in self._seen:
-                states = link_motions(cut.body)
-                self._seen[cut.body.uid] = _Seen(cut.body, cut.chain, states, states, {})
+                self._joints[key] = measured
+        self._wrenches.clear()
+        self._states.clear()
+        for measured in self._joints.values():
+            body = measured.body
+            if body.uid not in self._states:
+                now = link_motions(body)
+                self._states[body.uid] = _BodyStates(body, measured.links, now, now, {})
 
     def after(self, dt: float, gravity: Vec3) -> None:
         """Record the states after that step, after all helpers have acted."""
         self._dt, self._gravity = dt, gravity
-        for seen in self._seen.values():
-            seen.after = link_motions(seen.body)
-            owners = seen.body.owners
-            for index, force, at in self._friction.forces_on(seen.body.uid):
-                note(seen.outside, owners.get(index, index), force, at)
-            for part in seen.body.parts if self._forces.wrenched_links else ():
+        for states in self._states.values():
+            states.after = link_motions(states.body)
+            owners = states.body.owners
+            for index, force, at in self._friction.forces_on(states.body.uid):
+                note(states.outside, owners.get(index, index), force, at)
+            for part in states.body.parts if self._forces.wrenched_links else ():
                 force, torque = self._forces.acting_on(part.row)
-                at = seen.before[part.index].position
-                note(seen.outside, part.index, force, at, torque)
+                at = states.before[part.index].position
+                note(states.outside, part.index, force, at, torque)
 
-    def _wrench(self, cut: _Cut, seen: _Seen) -> Optional[JointWrench]:
+    def _wrench(self, measured: _MeasuredJoint, states: _BodyStates) -> Optional[JointWrench]:
         """Return the wrench of a joint; None if a state is not finite."""
-        before, found = seen.before, seen.compute(self._dt)
-        child, parent = _link_pose(cut.child, before), _link_pose(cut.parent, before)
-        anchor = (transform(child, cut.joint.pose.position) if cut.child is not None
-                  else transform(parent, cut.parent_from_joint.position))
+        before, found = states.before, states.compute(self._dt)
+        child, parent = _link_pose(measured.child, before), _link_pose(measured.parent, before)
+        anchor = (transform(child, measured.joint.pose.position) if measured.child is not None
+                  else transform(parent, measured.parent_from_joint.position))
         force, torque = ZERO3, ZERO3
-        for part in cut.hung:
+        for part in measured.outboard:
             state = before[part.index]
             pull, turn = _inertial_wrench(part, state, found[part.index],
                                           self._gravity if part.gravity else ZERO3)
             force = add(force, pull)
             torque = add(torque, add(turn, cross(subtract(state.position, anchor), pull)))
-            for outer, at, moment in seen.outside.get(part.index, ()):
+            for outer, at, moment in states.outside.get(part.index, ()):
                 force = subtract(force, outer)
                 torque = subtract(torque, add(moment, cross(subtract(at, anchor), outer)))
         if not all(map(math.isfinite, (*force, *torque))):
             return None
-        if cut.child is not cut.hung[0]:
+        if measured.child is not measured.outboard[0]:
             force, torque = subtract(ZERO3, force), subtract(ZERO3, torque)
-        return _in_child(force, torque, child, None if cut.parent is None else parent)
+        return _in_child(force, torque, child, None if measured.parent is None else parent)
 
-    def _cut(self, key: JointKey) -> Optional[_Cut]:
+    def _find_joint(self, key: JointKey) -> Optional[_MeasuredJoint]:
         entry = self._models.get(key[0])
         if entry is None:
             return None
@@ -218,11 +221,11 @@ class JointWrenches(BodyObserver):
             for n, node in enumerate(plan.links):
                 if (node.joint is not None and node.joint.name == key[1]
                         and node.index != NO_LINK):
-                    return _cut_at(entry, body, plan.links, n)
+                    return _joint_at(entry, body, plan.links, n)
         return None
 
 
-def _cut_at(entry: Entry, body: Body, links: Sequence[TreeLink], n: int) -> _Cut:
+def _joint_at(entry: Entry, body: Body, links: Sequence[TreeLink], n: int) -> _MeasuredJoint:
     joint = links[n].joint
     assert joint is not None
     parts = {part.row - entry.first_row: part for part in body.parts}
@@ -232,13 +235,13 @@ def _cut_at(entry: Entry, body: Body, links: Sequence[TreeLink], n: int) -> _Cut
     for m in range(n + 1, len(links)):      # parents come before children
         if links[m].parent in within:
             within.add(m)
-    hung = [parts[links[m].index] for m in sorted(within) if links[m].index != NO_LINK]
-    return _Cut(body, _chain(parts, links), joint, names.get(joint.child),
-                names.get(joint.parent), hung,
+    outboard = [parts[links[m].index] for m in sorted(within) if links[m].index != NO_LINK]
+    return _MeasuredJoint(body, _links_of(parts, links), joint, names.get(joint.child),
+                names.get(joint.parent), outboard,
                 compose(inverse(poses.get(joint.parent, IDENTITY)), joint.pose))
 
 
-def _without_a_cut(entry: Entry, name: str) -> Optional[JointWrench]:
+def _wrench_without_links(entry: Entry, name: str) -> Optional[JointWrench]:
     """Return the wrench of a joint without outboard links: in a loop, or of a static model."""
     joint = next((one for one in entry.model.joints if one.name == name), None)
     constraints = entry.constraints.closing.get(name, [])
@@ -283,8 +286,8 @@ def _link_pose(part: Optional[Part], found: Dict[int, Motion]) -> Pose:
     return compose(Pose(state.position, state.orientation), inverse(part.link_from_com))
 
 
-def _chain(parts: Mapping[int, Part], links: Sequence[TreeLink]) -> _Chain:
-    """Return the chain of a body; `parts` by the link's index in the model."""
+def _links_of(parts: Mapping[int, Part], links: Sequence[TreeLink]) -> _Links:
+    """Return the links of a body; `parts` by the link's index in the model."""
     found: List[Tuple[Part, Optional[Part], Vec3]] = []
     for link in links:
         if link.index == NO_LINK:
@@ -298,11 +301,11 @@ def _chain(parts: Mapping[int, Part], links: Sequence[TreeLink]) -> _Chain:
     return tuple(found)
 
 
-def _accelerations(chain: _Chain, before: Mapping[int, Motion], after: Mapping[int, Motion],
+def _accelerations(links: _Links, before: Mapping[int, Motion], after: Mapping[int, Motion],
                    dt: float) -> Dict[int, _Acceleration]:
     """Return the accelerations of all links at the start of a step of `dt` s, by index."""
     found: Dict[int, _Acceleration] = {}
-    for part, parent, joint in chain:
+    for part, parent, joint in links:
         state, later = before[part.index], after[part.index]
         if parent is None and part.index == BASE:
             found[BASE] = _Acceleration(scale(subtract(later.linear, state.linear), 1.0 / dt),

@@ -32,7 +32,8 @@ AT_REST = Motion((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0
 """Of the world, and of what does not move."""
 
 
-def hung_states(uid: int, indices: Sequence[int], velocities: int = 1) -> Sequence[Tuple[Any, ...]]:
+def child_states(uid: int, indices: Sequence[int], velocities: int = 1,
+                 ) -> Sequence[Tuple[Any, ...]]:
     """Return PyBullet's states of links other than the base; with `velocities` 0 poses only."""
     if not indices:
         return ()
@@ -43,7 +44,7 @@ def hung_states(uid: int, indices: Sequence[int], velocities: int = 1) -> Sequen
 
 def motions(uid: int, indices: Sequence[int]) -> List[Motion]:
     """Return the motions of links of a body other than the base."""
-    return [Motion(state[0], state[1], state[6], state[7]) for state in hung_states(uid, indices)]
+    return [Motion(state[0], state[1], state[6], state[7]) for state in child_states(uid, indices)]
 
 
 def motion(uid: int, index: int) -> Motion:
@@ -55,9 +56,9 @@ def motion(uid: int, index: int) -> Motion:
 
 def link_motions(body: Body) -> Dict[int, Motion]:
     """Return the motions of all links of a body, by PyBullet's index."""
-    hung = [part.index for part in body.parts if part.index != BASE]
+    children = [part.index for part in body.parts if part.index != BASE]
     found = {} if body.base is None else {BASE: motion(body.uid, BASE)}
-    found.update(zip(hung, motions(body.uid, hung)))
+    found.update(zip(children, motions(body.uid, children)))
     return found
 
 
@@ -66,5 +67,5 @@ def read_com_pose(uid: int, index: int) -> Tuple[Vec3, Quat]:
     if index == BASE:
         position, orientation = pybullet.getBasePositionAndOrientation(uid)
     else:
-        position, orientation = hung_states(uid, (index,), 0)[0][:2]
+        position, orientation = child_states(uid, (index,), 0)[0][:2]
     return position, orientation

@@ -15,7 +15,7 @@ from typing import Dict, List, Set, Tuple
 import numpy as np
 import pybullet
 
-from .link_states import hung_states
+from .link_states import child_states
 
 _CENTRED = 1e-7  # m: a centre of mass closer to the axis counts as on it
 _ROUND = 1e-6    # relative difference below which moments count as equal
@@ -130,7 +130,7 @@ class MassMatrix:
         """Return centre of mass, pivot and rotation of the principal axes of the base and links."""
         position, turn = pybullet.getBasePositionAndOrientation(self._uid)
         centres, pivots, quaternions = [position], [position], [turn]
-        for state in hung_states(self._uid, self._links, velocities=0):
+        for state in child_states(self._uid, self._links, velocities=0):
             centres.append(state[0])
             pivots.append(state[4])
             quaternions.append(state[1])

@@ -287,8 +287,8 @@ class StateReadout(BodyObserver):
 
     def _read_tree(self, body: Body) -> None:
         uid, links = body.uid, self._link_bytes
-        hung = body.parts if body.base is None else body.parts[1:]
-        found = motions(uid, [part.index for part in hung])
+        children = body.parts if body.base is None else body.parts[1:]
+        found = motions(uid, [part.index for part in children])
         if body.base is not None:
             found.insert(0, motion(uid, BASE))
         states = pybullet.getJointStates(uid, [axis.index for axis in body.axes]) \

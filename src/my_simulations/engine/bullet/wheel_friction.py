@@ -36,7 +36,7 @@ from .contact_slip import mean_velocity
 from .edge_loads import NEAR, Loads, carrying, shared
 from .extra_surfaces import anisotropy
 from .link_friction import Drive, link_friction
-from .link_states import Motion, hung_states, motion, motions
+from .link_states import Motion, child_states, motion, motions
 from .step_helper import FAR, StepHelper, next_multiple
 from .surface_links import ContactMobility, SurfaceLink, contact_mobility, surface_links
 from .wheel_edges import wheel_edges
@@ -216,7 +216,7 @@ class WheelFriction(StepHelper):
         # Bullet takes the arm of a force from the link poses of the last forward kinematics. Other
         # readers request these at any time, so they are requested here in each step.
         for uid, index in {uid: index for uid, index in self._slides if index != BASE}.items():
-            hung_states(uid, (index,), 0)
+            child_states(uid, (index,), 0)
         for key, slide in self._slides.items():
             slips = key in self._slipping
             for at, force, _, other in slide.acting:
@@ -295,8 +295,8 @@ class WheelFriction(StepHelper):
         for uid, indices in bodies.items():
             rows: List[Tuple[Motion, Optional[Vec3], Contacts]] = []
             keys: List[LinkKey] = []
-            hung = [index for index in indices if index != BASE]
-            read = dict(zip(hung, motions(uid, hung)))
+            children = [index for index in indices if index != BASE]
+            read = dict(zip(children, motions(uid, children)))
             touching: Dict[int, Contacts] = {index: [] for index in indices}
             for contact in pybullet.getContactPoints(bodyA=uid):
                 if contact[LINK] in touching:
