@@ -11,7 +11,7 @@ from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Collision, Cylinder, Surface
-from my_simulations.engine.bullet.edge_loads import shared
+from my_simulations.engine.bullet.edge_loads import distribute_loads
 from my_simulations.engine.bullet.link_states import Motion
 from my_simulations.engine.commands import ReadContacts
 from my_simulations.engine.drive_commands import JointMotor, SetMotors
@@ -220,7 +220,7 @@ def test_a_base_on_wide_wheels_turns_as_its_edges_share_its_weight(lab: Lab, law
 
 
 def _wheel_at(x: float, y: float, loads, gap: float = 0.0, tilt: float = 0.0):
-    """A lying wheel for `shared`: its contacts at two edges 0.1 m apart."""
+    """A lying wheel for `distribute_loads`: its contacts at two edges 0.1 m apart."""
     contacts = [(0, 1, 0, 0, -1, (x, y + side, 0.0), (x, y + side, 0.0), (0.0, 0.0, 1.0), gap * n,
                  load, 0, (1.0, 0.0, 0.0), 0, (0.0, 1.0, 0.0))
                 for n, (side, load) in enumerate(zip((-0.05, 0.05), loads))]
@@ -235,7 +235,7 @@ def test_edges_share_with_the_same_sum_and_the_same_moments():
     wheels = [_wheel_at(*at, loads) for at, loads in zip(
         CORNERS, [(20.0, 0.0), (30.0, 0.0), (0.0, 25.0), (0.0, 35.0)])]
     before = [(contact[5], contact[9]) for _, _, contacts in wheels for contact in contacts]
-    after = [(contact[5], load) for contacts, loads in shared(wheels)
+    after = [(contact[5], load) for contacts, loads in distribute_loads(wheels)
              for contact, load in zip(contacts, loads)]
     assert len(after) == 8 and min(load for _, load in after) > 0.0
     for weight in (lambda at: 1.0, lambda at: at[0], lambda at: at[1]):
@@ -248,6 +248,6 @@ def test_edges_share_with_the_same_sum_and_the_same_moments():
     [_wheel_at(*at, loads) for at, loads in zip(CORNERS, [(99.0, 0.0), *[(0.1, 0.0)] * 3])],
     [_wheel_at(*at, (10.0, 0.0), gap=1e-3) for at in CORNERS[::3]][:1]])
 def test_loads_stay_where_wheels_are_tilted_or_an_edge_would_be_pulled_down(wheels):
-    for (contacts, loads), (_, _, all_of_it) in zip(shared(wheels), wheels):
+    for (contacts, loads), (_, _, all_of_it) in zip(distribute_loads(wheels), wheels):
         assert loads == [contact[9] for contact in all_of_it if contact[9] > 0.0]
         assert len(contacts) == 1

@@ -28,9 +28,9 @@ the loads, N, and of loads times positions, N m."""
 NEAR = 1e-4
 """m: an edge closer to the floor carries a load."""
 
-_LYING = 0.02  # of the axle along the floor normal: a wheel tilted more has one edge
-_LEVEL = 1e-3  # m: floors with a larger height difference are not one plane
-_ALIKE = 0.999  # cosine: floors with a smaller one between their normals, likewise
+_TILTED = 0.02     # of the axle along the floor normal: a wheel tilted more has one edge
+_LEVEL = 1e-3      # m: floors with a larger height difference are not one plane
+_PARALLEL = 0.999  # cosine: floors with a smaller one between their normals, likewise
 
 
 def axle_of(part: Part, link: Link) -> Optional[Vec3]:
@@ -41,21 +41,21 @@ def axle_of(part: Part, link: Link) -> Optional[Vec3]:
     return rotate(conjugate(part.link_from_com.orientation), along)
 
 
-def carrying(contacts: Sequence[ContactPoint]) -> Loads:
+def loaded_contacts(contacts: Sequence[ContactPoint]) -> Loads:
     """Return the contacts of a link that carry a load, and their loads, N."""
     kept = [contact for contact in contacts if contact[LOAD] > 0.0 and contact[DISTANCE] <= 0.0]
     return kept, [contact[LOAD] for contact in kept]
 
 
-def shared(wheels: Sequence[Wheel]) -> List[Loads]:
-    """Return the loaded contacts of each wheel of a body, with loads for equally stiff edges.
+def distribute_loads(wheels: Sequence[Wheel]) -> List[Loads]:
+    """Return the loaded contacts of each wheel of a body, with the loads of equally stiff edges.
 
     If the wheels do not stand on one plane, or a load would be negative, Bullet's loads stay.
     """
     edges = _edges(wheels)
     loads = None if edges is None else _spread(*edges[1:])
     if edges is None or loads is None:
-        return [carrying(contacts) for _, _, contacts in wheels]
+        return [loaded_contacts(contacts) for _, _, contacts in wheels]
     made: List[Loads] = [([], []) for _ in wheels]
     for (wheel, contacts), load in zip(edges[0], loads):
         kept, parts = made[wheel]
@@ -86,7 +86,7 @@ def _edges(wheels: Sequence[Wheel]) -> Optional[_Edges]:
     for n, (motion, axle, contacts) in enumerate(wheels):
         if axle is not None:
             a, b, c = rotate(motion.orientation, axle)
-            if abs(a * nx + b * ny + c * nz) > _LYING:
+            if abs(a * nx + b * ny + c * nz) > _TILTED:
                 return None
             u, v, w = motion.position
         sides: Tuple[List[ContactPoint], List[ContactPoint]] = ([], [])
@@ -96,7 +96,7 @@ def _edges(wheels: Sequence[Wheel]) -> Optional[_Edges]:
                 continue
             (x, y, z), (p, q, r), load = contact[POINT], contact[NORMAL], contact[LOAD]
             if (abs(x * nx + y * ny + z * nz - height) > _LEVEL
-                    or p * nx + q * ny + r * nz < _ALIKE):
+                    or p * nx + q * ny + r * nz < _PARALLEL):
                 return None
             ahead, aside = x * tx + y * ty + z * tz, x * sx + y * sy + z * sz
             total, x_load, y_load = total + load, x_load + load * ahead, y_load + load * aside

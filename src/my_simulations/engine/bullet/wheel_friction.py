@@ -1,11 +1,11 @@
-"""Friction of sliding wheels and of surfaces with slip: Coulomb's law for any heading.
+"""Apply Coulomb's law to sliding wheels and to surfaces with slip, for any heading.
 
 Bullet's friction of articulated bodies depends on the heading, and has no slip that depends on the
 force (slip1, slip2; ODE's manual, "Contact"), of which Gazebo Classic 11 applies the sum of both
-surfaces to a pair. So it is reduced to a share of 0.001 for links with slip, and for links on
-joints while they slide on static bodies (figures: doc/dev/contacts.md, "Friction"). A force at each
-contact replaces it, by the law of `link_friction`. It is computed before a step from the contacts
-of the last one.
+surfaces to a pair. So Bullet's friction is reduced to a share of 0.001 for links with slip, and for
+links on joints while they slide on static bodies (figures: doc/dev/contacts.md, "Friction"). A
+force at each contact replaces it, by the law of `link_friction`. It is computed before a step from
+the contacts of the last one.
 
 While all links of a body without slip are held, or slide with all friction, it is computed every
 few steps only. Once all links of a body that have no slip have stopped sliding, they get Bullet's
@@ -33,7 +33,7 @@ from .contact_points import (
     LinkKey,
 )
 from .contact_slip import mean_velocity
-from .edge_loads import NEAR, Loads, carrying, shared
+from .edge_loads import NEAR, Loads, distribute_loads, loaded_contacts
 from .extra_surfaces import anisotropy
 from .link_friction import Drive, link_friction
 from .link_states import Motion, child_states, motion, motions
@@ -44,19 +44,25 @@ from .wheel_edges import wheel_edges
 EVERY = 16
 """Steps between two checks for sliding links."""
 
-_SELDOM = 4          # checks until a body with a fixed base is checked again
-_SLIDES = 2e-3       # m/s of slip: links at rest stay below it
-_HELD = 5e-4         # m/s of slip: a link below it is at rest
-_CARRIES = 0.02      # of the load: a link with more lasting friction does not return to Bullet's
-_QUIET = 32          # steps at rest until Bullet's friction holds a body again
-_PERIOD = 4e-3       # s between two computations of the friction on a link that goes on sliding
-_LEFT = (1e-3, 1e-3) # shares of Bullet's friction that stay
+_SELDOM = 4                # checks until a body with a fixed base is checked again
+_SLIDES = 2e-3             # m/s of slip: links at rest stay below it
+_RESTS = 5e-4              # m/s of slip: a link below it is at rest
+_LASTING = 0.02            # of the load: with more lasting friction (B), Bullet's is not restored
+_REST_STEPS = 32           # steps at rest until Bullet's friction is restored
+_PERIOD = 4e-3  # s between two computations of the friction on a link that goes on sliding
+_REMAINING = (1e-3, 1e-3)  # shares of Bullet's friction that stay
 
 Contacts = List[ContactPoint]
 
 
 class ActingFriction(NamedTuple):
-    """Friction on a link in the last step, N, at a contact, in world axes; and the normal force."""
+    """The friction on a link at a contact in the last step, N, world axes.
+
+    Attributes:
+        at: the contact, m.
+        load: the normal force, N.
+        other: the link that it touches.
+    """
 
     at: Vec3
     force: Vec3
@@ -66,18 +72,18 @@ class ActingFriction(NamedTuple):
 
 @dataclass
 class _Slide:
-    """A link with friction of this module.
+    """The friction of this module on a link.
 
     Attributes:
-        biases: B by the other link, N, world axes.
+        biases: B of `link_friction` by the other link, N, world axes.
         acting: fields of `ActingFriction`, by contact.
-        quiet: steps for which it has not slid.
+        rest_steps: steps for which it has not slid.
         steady: whether its friction needs no update for some steps.
     """
 
     biases: Dict[LinkKey, Vec3] = field(default_factory=dict)
     acting: List[Tuple[Vec3, Vec3, float, LinkKey]] = field(default_factory=list)
-    quiet: int = 0
+    rest_steps: int = 0
     steady: bool = False
 
 
@@ -100,26 +106,26 @@ class WheelFriction(StepHelper):
         self._commanded: Set[int] = set()
         self._links: Dict[LinkKey, SurfaceLink] = {}
         self._wheels: Dict[int, Dict[int, SurfaceLink]] = {}   # links that can slide, by body
-        self._rigs: Dict[int, Dict[int, SurfaceLink]] = {}     # links on no joint, by body
+        self._jointless: Dict[int, Dict[int, SurfaceLink]] = {}   # links on no joint, by body
         self._floors: Set[int] = set()                   # static bodies with one coefficient
         self._slides: Dict[LinkKey, _Slide] = {}
         self._next: Dict[int, int] = {}                  # next computation, step count, by body
         self._slipping: Set[LinkKey] = set()
         self._fixed: Set[int] = set()                    # bodies with a fixed base
-        self._found: Dict[LinkKey, Tuple[Motion, Loads]] = {}   # for the friction of the next step
+        self._readings: Dict[LinkKey, Tuple[Motion, Loads]] = {}   # for the next step
         self._mobilities: Dict[LinkKey, ContactMobility] = {}
         self._rows: Dict[int, List[LinkKey]] = {}
         self._axes: Dict[int, Tuple[Body, Axis]] = {}
         self._slip_commands: Dict[int, WheelSlip] = {}
-        self.body_tables = (self._links, self._wheels, self._rigs, self._floors, self._slides,
-                            self._next, self._slipping, self._fixed, self._commanded, self._found,
-                            self._mobilities)
+        self.body_tables = (self._links, self._wheels, self._jointless, self._floors, self._slides,
+                            self._next, self._slipping, self._fixed, self._commanded,
+                            self._readings, self._mobilities)
         self._cone = True
 
     # -- bodies ------------------------------------------------------------------------------------
 
     def configure(self, cone: bool) -> None:
-        """Take sliding links (friction cone), or leave them to Bullet (friction pyramid)."""
+        """Replace Bullet's friction on sliding links (friction cone), or keep it (pyramid)."""
         self._cone = cone
         if not cone:
             for key in self._slides.keys() - self._slipping:
@@ -133,11 +139,11 @@ class WheelFriction(StepHelper):
             self._links[key] = link
             self._rows.setdefault(link.part.row, []).append(key)
             if any(link.slips):
-                self._slip(key)
+                self._add_slipping(key)
             elif link.is_floor:
                 self._floors.add(key[0])
             elif body.moves and not body.rigid and link.part.mu > 0.0:
-                table = self._wheels if link.joint >= 0 else self._rigs
+                table = self._wheels if link.joint >= 0 else self._jointless
                 table.setdefault(body.uid, {})[key[1]] = link
 
     def forget(self, body: Body) -> None:
@@ -154,12 +160,12 @@ class WheelFriction(StepHelper):
             if wheel.row in self._rows and wheel.joint_row in self._axes:
                 self._slip_commands[wheel.row] = wheel
                 for key in self._rows[wheel.row]:
-                    self._slip(key)
+                    self._add_slipping(key)
                     self._wheels.get(key[0], {}).pop(key[1], None)
 
-    def _slip(self, key: LinkKey) -> None:
+    def _add_slipping(self, key: LinkKey) -> None:
         self._slipping.add(key)
-        self._take(key)
+        self._replace_friction(key)
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Restore Bullet's friction for the links of a body, except those with slip."""
@@ -173,7 +179,7 @@ class WheelFriction(StepHelper):
             return
         for key in [key for key in self._slides if key[0] == body.uid]:
             if key in self._slipping:
-                self._found.pop(key, None)
+                self._readings.pop(key, None)
                 self._slides[key] = _Slide()
             else:
                 self._restore_friction(key)
@@ -208,13 +214,13 @@ class WheelFriction(StepHelper):
         return next_multiple(step, EVERY) if self._cone and self._wheels else FAR
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Compute friction for the step that begins at count `step`, where it is due; apply it."""
+        """Compute the friction that is due, and apply all friction of this module."""
         for uid in sorted(self._commanded):
-            self._begin(uid, norm(gravity) * dt)
+            self._replace_if_driven(uid, norm(gravity) * dt)
         self._commanded.clear()
         self._compute(step, dt, gravity)
-        # Bullet takes the arm of a force from the link poses of the last forward kinematics. Other
-        # readers request these at any time, so they are requested here in each step.
+        # Bullet computes the lever of a force from the link poses of the last forward kinematics.
+        # Other readers request these at any time, so they are requested here in each step.
         for uid, index in {uid: index for uid, index in self._slides if index != BASE}.items():
             child_states(uid, (index,), 0)
         for key, slide in self._slides.items():
@@ -226,47 +232,47 @@ class WheelFriction(StepHelper):
                                                 pybullet.WORLD_FRAME)
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Find links that slide, every few steps; read the loads for friction that is due next."""
+        """Find links that slide, periodically; read the loads for friction that is due next."""
         if step % EVERY == 0 and self._cone:
             seldom = step % (_SELDOM * EVERY) == 0
             for uid, wheels in self._wheels.items():
                 if seldom or uid not in self._fixed:
                     self._find_slides(uid, wheels)
         due = {uid for uid, _ in self._slides if self._next.get(uid, step + 1) <= step + 1}
-        self._found.update(self._loads(due) if due else {})
+        self._readings.update(self._read_loads(due) if due else {})
 
     def _compute(self, step: int, dt: float, gravity: Vec3) -> None:
         """Compute the friction that is due, for the efforts of the step that begins at `step`."""
-        if not self._found:
+        if not self._readings:
             return
         for wheel in self._slip_commands.values():
             self._set_slip(wheel)
         weight, later = norm(gravity), next_multiple(step + 1, max(1, int(_PERIOD / dt)))
-        unsteady = {uid for uid, index in self._found if not self._slides[uid, index].steady}
-        for uid in {uid for uid, _ in self._found}:
+        unsteady = {uid for uid, index in self._readings if not self._slides[uid, index].steady}
+        for uid in {uid for uid, _ in self._readings}:
             self._next[uid] = step + 1 if uid in unsteady else later
-        for key, (moves, loads) in list(self._found.items()):
-            self._go_on(key, moves, *loads, step, dt, weight)
-        self._found.clear()
-        self._restore_quiet()
+        for key, (moves, loads) in list(self._readings.items()):
+            self._update_friction(key, moves, *loads, step, dt, weight)
+        self._readings.clear()
+        self._restore_at_rest()
 
     def _find_slides(self, uid: int, wheels: Dict[int, SurfaceLink]) -> None:
-        """Take the links of a body that slide on static bodies."""
+        """Replace Bullet's friction on the links of a body that slide on static bodies."""
         found: Dict[int, Contacts] = {}
         for contact in pybullet.getContactPoints(bodyA=uid):
             if contact[LINK] in wheels and contact[DISTANCE] < NEAR:
                 found.setdefault(contact[LINK], []).append(contact)
         for index, near in found.items():
-            contacts, loads = carrying(near)
+            contacts, loads = loaded_contacts(near)
             if contacts and (uid, index) not in self._slides and not self._touches_others(contacts):
                 moves = motion(uid, index)
                 edges = wheel_edges(wheels[index].axle, moves, near)
                 if _SLIDES < max(norm(mean_velocity(moves, contacts, loads)),
                                  0.0 if edges is None else edges.slip):
-                    self._take((uid, index))
+                    self._replace_friction((uid, index))
 
-    def _begin(self, uid: int, gain: float) -> None:
-        """Take the wheels of a body if one cannot follow its motor in a step without sliding.
+    def _replace_if_driven(self, uid: int, gain: float) -> None:
+        """Replace Bullet's friction on wheels if one cannot follow its motor without sliding.
 
         No link of a fixed arm is a wheel while its joints move nothing that touches something.
         `gain`: speed that gravity gives in a step, m/s.
@@ -278,15 +284,15 @@ class WheelFriction(StepHelper):
         if any(link.axle is not None and abs(
                 self._rate(link.joint) - pybullet.getJointState(uid, index)[1]) * link.radius
                 > min(1.0, link.mus[0]) * gain for index, link in wheels.items()):
-            for index in (*wheels, *self._rigs.get(uid, ())):
+            for index in (*wheels, *self._jointless.get(uid, ())):
                 if (uid, index) not in self._slides:
-                    self._take((uid, index))
+                    self._replace_friction((uid, index))
 
     def _touches_others(self, contacts: Contacts) -> bool:
         return not self._floors.issuperset([contact[OTHER_BODY] for contact in contacts])
 
-    def _loads(self, due: Set[int]) -> Dict[LinkKey, Tuple[Motion, Loads]]:
-        """Return motion and loads of each sliding link; wheels of a body share their load."""
+    def _read_loads(self, due: Set[int]) -> Dict[LinkKey, Tuple[Motion, Loads]]:
+        """Return motion and loads of each sliding link of the bodies in `due`."""
         bodies: Dict[int, List[int]] = {}
         for uid, index in self._slides:
             if uid in due:
@@ -305,16 +311,17 @@ class WheelFriction(StepHelper):
                 moves = read[index] if index in read else motion(uid, index)
                 key = (uid, index)
                 if key in self._slipping:
-                    found[key] = moves, carrying(contacts)
+                    found[key] = moves, loaded_contacts(contacts)
                 else:
                     keys.append(key)
                     rows.append((moves, self._links[key].axle, contacts))
-            told = shared(rows) if len(rows) > 1 else [carrying(row[2]) for row in rows]
-            for key, row, loads in zip(keys, rows, told):
+            shared_loads = (distribute_loads(rows) if len(rows) > 1
+                            else [loaded_contacts(row[2]) for row in rows])
+            for key, row, loads in zip(keys, rows, shared_loads):
                 found[key] = row[0], loads
         return found
 
-    def _go_on(self, key: LinkKey, moves: Motion, contacts: Contacts, loads: List[float],
+    def _update_friction(self, key: LinkKey, moves: Motion, contacts: Contacts, loads: List[float],
                step: int, dt: float, weight: float) -> None:
         """Compute the friction on a link from count `step` to its next computation."""
         slide, slips, steps = self._slides[key], key in self._slipping, self._next[key[0]] - step
@@ -325,7 +332,7 @@ class WheelFriction(StepHelper):
         slide.acting = []
         # A wheel without contacts can land in the next step; rollers of Mecanum wheels do.
         slide.steady = not slips and (bool(contacts) or link.joint < 0)
-        slide.quiet += steps
+        slide.rest_steps += steps
         effort = self._effort(link.joint, step)
         slide.steady &= not effort   # a loop can change it in each step
         biases, slide.biases = slide.biases, {}
@@ -343,16 +350,16 @@ class WheelFriction(StepHelper):
                 link, under, moves, (points, carried), biases.get(other, ZERO3),
                 Drive(effort, self._holding(link.joint), mobility), steps * dt, weight)
             slide.biases[other] = bias
-            if link.joint >= 0 and (slip > _HELD or norm(bias) > _CARRIES * sum(carried)):
-                slide.quiet = 0
-            slide.steady &= slip <= _HELD or slip > ended * _PERIOD / (steps * dt)
+            if link.joint >= 0 and (slip > _RESTS or norm(bias) > _LASTING * sum(carried)):
+                slide.rest_steps = 0
+            slide.steady &= slip <= _RESTS or slip > ended * _PERIOD / (steps * dt)
             slide.acting += [(contact[POINT], force, load, other)
                              for contact, force, load in zip(points, forces, carried)]
 
     def _mobility(self, link: SurfaceLink, contact: ContactPoint, share: float) -> ContactMobility:
-        """Return the mobility of a body at a contact; computed once, when the link is taken.
+        """Return the mobility of a body at a contact; computed once while the link slides.
 
-        `share`: of the mass that is the largest friction at the contact, N/kg.
+        `share`: the largest friction at the contact per mass of the body, N/kg.
         """
         key = link.uid, link.part.index
         found = self._mobilities.get(key)
@@ -368,7 +375,7 @@ class WheelFriction(StepHelper):
 
     # -- Bullet's friction -------------------------------------------------------------------------
 
-    def _take(self, key: LinkKey) -> None:
+    def _replace_friction(self, key: LinkKey) -> None:
         """Replace Bullet's friction on a link from the next step on."""
         link = self._links[key]
         if not any(uid == key[0] for uid, _ in self._slides):
@@ -377,20 +384,20 @@ class WheelFriction(StepHelper):
         self._slides.setdefault(key, _Slide())
         self._next.pop(key[0], None)
         pybullet.changeDynamics(*key, anisotropicFriction=anisotropy(
-            link.mus, link.first or ZERO3, _LEFT))
+            link.mus, link.first or ZERO3, _REMAINING))
 
     def _restore_friction(self, key: LinkKey) -> None:
         link = self._links[key]
         del self._slides[key]
-        self._found.pop(key, None)
+        self._readings.pop(key, None)
         pybullet.changeDynamics(*key, anisotropicFriction=anisotropy(link.mus, link.first or ZERO3))
 
-    def _restore_quiet(self) -> None:
+    def _restore_at_rest(self) -> None:
         """Restore Bullet's friction for the links of a body together, once all are at rest.
 
         Bullet stops a slip sooner: a base with different friction on its wheels would turn.
         """
-        slides = {uid for (uid, _), slide in self._slides.items() if slide.quiet < _QUIET}
+        slides = {uid for (uid, _), slide in self._slides.items() if slide.rest_steps < _REST_STEPS}
         for key in [key for key in self._slides if key[0] not in slides]:
             if key not in self._slipping:
                 self._restore_friction(key)
