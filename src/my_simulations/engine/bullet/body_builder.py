@@ -93,7 +93,7 @@ class Builder:
         """Raises BodyPlanError, ShapeError."""
         self._model: Model = command.model
         self.model_id = command.model_id
-        self._meets = SelfCollision(command.model)
+        self._self_collision = SelfCollision(command.model)
         self._first_row = command.first_link_row
         self._articulated = command.articulated or not command.model.static and any(
             is_soft(link) or len(by_friction(link)) > 1
@@ -109,7 +109,7 @@ class Builder:
         self._mobilities: Dict[int, float] = {}
         self.plans = [plan if self._is_rigid(plan) else in_pieces(plan, command.model)
                       for plan in plan_bodies(command.model)]
-        self._prints = [self._rigid(plan, command.meshes) if self._is_rigid(plan)
+        self._blueprints = [self._rigid(plan, command.meshes) if self._is_rigid(plan)
                         else self._tree(plan, command.meshes) for plan in self.plans]
 
     def build(self, pose: Pose) -> List[Body]:
@@ -119,7 +119,7 @@ class Builder:
         """
         built: List[Body] = []
         try:
-            for each in self._prints:
+            for each in self._blueprints:
                 built.append(self._build_rigid(each, pose) if isinstance(each, _Rigid)
                              else self._build_tree(each, pose))
             self._ignore_each_other(built)
@@ -251,7 +251,7 @@ class Builder:
     def _collide(self, plan: BodyPlan) -> bool:
         """Whether any two links of a tree collide with each other."""
         numbers = [node.index for node in plan.links if node.index != NO_LINK]
-        return any(self._meets.collides(one, other)
+        return any(self._self_collision.collides(one, other)
                    for one, other in itertools.combinations(numbers, 2))
 
     def _masses(self, plan: BodyPlan, n: int) -> _Masses:
@@ -364,7 +364,8 @@ class Builder:
 
     def _ignore_pairs(self, pairs: Iterable[Tuple[_Collider, _Collider]], ignored: bool) -> None:
         for (one, index, row), (other, other_index, other_row) in pairs:
-            if not self._meets.collides(row - self._first_row, other_row - self._first_row):
+            if not self._self_collision.collides(row - self._first_row,
+                                                 other_row - self._first_row):
                 collision_groups.ignore(one, other, index, other_index, ignored)
 
 

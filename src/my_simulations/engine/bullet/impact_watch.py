@@ -136,8 +136,8 @@ class ImpactWatch(StepHelper):
         self._parameters = parameters
         self._watched: Dict[int, _Watched] = {}
         self._agenda: Agenda[int] = Agenda()
-        self._meets: Dict[int, Filters] = {}
-        self._points = LandingPoints(self._meets)
+        self._filters: Dict[int, Filters] = {}
+        self._points = LandingPoints(self._filters)
         self._moving: Set[int] = set()
         self._motions = Motions(self._moving)
         self._bouncing: Set[int] = set()
@@ -147,7 +147,7 @@ class ImpactWatch(StepHelper):
         self._floors: Set[int] = set()      # boxes below planes: they touch what the planes do
         # By body: the step of the next search for bodies in reach, and those found last.
         self._near: Dict[int, Tuple[int, List[int]]] = {}
-        self.body_tables = (self._watched, self._agenda, self._meets, self._moving,
+        self.body_tables = (self._watched, self._agenda, self._filters, self._moving,
                             self._bouncing, self._radii, self._uneven, self._flat, self._floors)
 
     def add(self, body: Body) -> None:
@@ -168,7 +168,7 @@ class ImpactWatch(StepHelper):
         self._watched[body.uid] = _Watched(body)
         self._agenda.plan(body.uid, 0)
         self._flat[body.uid] = flat_axes(body)
-        self._meets[body.uid] = [(part.index, collision_groups.moving(part.link))
+        self._filters[body.uid] = [(part.index, collision_groups.moving(part.link))
                                  for part in body.colliders]
         if any(restitution(of_link(part.link)) > 0.0 for part in body.colliders):
             self._bouncing.add(body.uid)

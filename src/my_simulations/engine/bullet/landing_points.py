@@ -69,11 +69,11 @@ class LandingPoints:
     """Makes Bullet find the contact points of landing bodies.
 
     Args:
-        meets: the filters of the bodies, by PyBullet's numbers.
+        filters: the filters of the bodies, by PyBullet's numbers; setting one drops contact points.
     """
 
-    def __init__(self, meets: Dict[int, Filters]) -> None:
-        self._meets = meets
+    def __init__(self, filters: Dict[int, Filters]) -> None:
+        self._filters = filters
 
     def find(self, touches: List[Touch]) -> None:
         """Tilt bodies about their contacts, and have Bullet detect the contact points."""
@@ -113,8 +113,8 @@ class LandingPoints:
 
     def _drop_points(self, uid: int) -> None:
         """Drop the contact points of a body: Bullet keeps four per pair, and selects them badly."""
-        for index, meets in self._meets[uid]:
-            meets.set(uid, index)
+        for index, collision_filter in self._filters[uid]:
+            collision_filter.set(uid, index)
 
 
 def _longest(touch: Touch, places: List[Vec3]) -> float:

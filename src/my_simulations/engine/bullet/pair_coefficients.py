@@ -31,22 +31,22 @@ _Pair = FrozenSet[LinkKey]
 EVERY = 4
 """Steps between two checks of the contacts."""
 
-_MOST_LOOKS = 4       # checks, at most, until the next turn of a surface with unchanged contacts
-_AT_REST = 16         # the same for a body at rest
-_RING_EVERY = 8       # checks between two solutions of a ring
-_LEAST_WEIGHT = 1e-3  # of a contact without load
-_COUNTS = 0.1         # share of the largest load: contacts below it cause no warning
-_FRICTION_OFF = 0.03  # tolerated relative error
-_SMALLEST = 1e-6
-_NOTHING: FrozenSet[_Pair] = frozenset()
+_LONGEST_WAIT = 4           # checks until a surface with unchanged contacts is read again, at most
+_WAIT_AT_REST = 16          # the same for a body at rest
+_RING_EVERY = 8             # checks between two solutions of a ring
+_LEAST_WEIGHT = 1e-3        # of a contact without load
+_WARNING_LOAD = 0.1         # share of the largest load: contacts below it cause no warning
+_FRICTION_TOLERANCE = 0.03  # tolerated relative error
+_LEAST_COEFFICIENT = 1e-6   # the logarithm of 0 is not finite
+_NO_PAIRS: FrozenSet[_Pair] = frozenset()
 _NO_VELOCITY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
-_AMONG_MOVING = 0.05     # weight of a pair of moving surfaces; of one with a static surface: 1
-_MOST_KINDS = 60         # with more, pairs of moving surfaces are ignored
-_RESTITUTION_OFF = 0.05  # tolerated relative error
+_MOVING_PAIR_WEIGHT = 0.05  # weight of a pair of moving surfaces; of one with a static surface: 1
+_MOST_KINDS = 60  # with more, pairs of moving surfaces are ignored
+_RESTITUTION_TOLERANCE = 0.05  # tolerated relative error
 
 
-def _fitted(pairs: Sequence[Any], smaller: Sequence[float], fixed: Mapping[Any, float],
+def _fit_coefficients(pairs: Sequence[Any], smaller: Sequence[float], fixed: Mapping[Any, float],
             weights: np.ndarray) -> Tuple[Dict[Any, float], np.ndarray]:
     """Return the values to store, and the relative error of each pair.
 
@@ -90,7 +90,7 @@ class FrictionBalance(StepHelper):
         self._free: Dict[LinkKey, float] = {}
         self._touching: Dict[LinkKey, Set[_Pair]] = {}
         self._agenda: Agenda[LinkKey] = Agenda()
-        self._wait: Dict[LinkKey, int] = {}   # checks between two turns
+        self._wait: Dict[LinkKey, int] = {}   # checks from one reading to the next
         self._rigid: Set[int] = set()
         self.body_tables = (self._mu, self._fixed, self._free, self._touching, self._agenda,
                             self._wait, self._rigid)
@@ -102,17 +102,17 @@ class FrictionBalance(StepHelper):
             self._rigid.add(body.uid)
         for uid, part in body.surfaces:
             node = (uid, part.index)
-            self._mu[node] = max(part.mu, _SMALLEST)
+            self._mu[node] = max(part.mu, _LEAST_COEFFICIENT)
             if body.moves and part.mu != 1.0:
                 self._free[node] = part.friction
                 self._agenda.plan(node, 0)
             else:
-                self._fixed[node] = max(part.friction, _SMALLEST)
+                self._fixed[node] = max(part.friction, _LEAST_COEFFICIENT)
 
     def forget(self, body: Body) -> None:
         for uid, part in body.surfaces:
             for pair in list(self._touching.get((uid, part.index), ())):
-                self._part(pair)
+                self._remove_pair(pair)
         super().forget(body)
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
@@ -122,7 +122,7 @@ class FrictionBalance(StepHelper):
                 self._agenda.plan((body.uid, part.index), 0)
 
     def due(self, step: int) -> int:
-        """The step of the next check at which a surface is due."""
+        """The step of the next check in which a surface is read or a ring is solved."""
         return next_multiple(max(step, min(self._agenda.next, self._ring)), EVERY)
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
@@ -144,25 +144,25 @@ class FrictionBalance(StepHelper):
         changed = False
         for node in self._agenda.take(step):
             if node[0] in self._rigid and pybullet.getBaseVelocity(node[0]) == _NO_VELOCITY:
-                looks = _AT_REST
+                checks = _WAIT_AT_REST
             elif self._read_surface(node):
-                changed, looks = True, 1
+                changed, checks = True, 1
             else:
-                looks = min(2 * self._wait.get(node, 1), _MOST_LOOKS)
-            self._wait[node] = looks
-            self._agenda.plan(node, step + looks * EVERY)
+                checks = min(2 * self._wait.get(node, 1), _LONGEST_WAIT)
+            self._wait[node] = checks
+            self._agenda.plan(node, step + checks * EVERY)
         return changed
 
     def _solve(self, pairs: List[_Pair], step: int) -> None:
         loads = np.array([self._pairs[pair] for pair in pairs])
         weights = loads / max(float(loads.max()), 1e-9) + _LEAST_WEIGHT
-        values, off = _fitted(pairs, [min(self._mu[node] for node in pair) for pair in pairs],
-                              self._fixed, weights)
+        values, off = _fit_coefficients(
+            pairs, [min(self._mu[node] for node in pair) for pair in pairs], self._fixed, weights)
         if float(off.max()) > 1e-6:
             self._ring = step + _RING_EVERY * EVERY
-        off = off * (weights > _COUNTS)
+        off = off * (weights > _WARNING_LOAD)
         worst = int(off.argmax())
-        if off[worst] > _FRICTION_OFF:
+        if off[worst] > _FRICTION_TOLERANCE:
             self._misfit(min(node for node in pairs[worst] if node in self._free)[0],
                          "touches others in a ring, for which no friction fits all pairs: it is"
                          " {:.0f} % off", float(off[worst]))
@@ -185,17 +185,17 @@ class FrictionBalance(StepHelper):
             if other in self._mu and other != node:
                 pair = frozenset((node, other))
                 found[pair] = found.get(pair, 0.0) + force
-        before = self._touching.get(node, _NOTHING)
+        before = self._touching.get(node, _NO_PAIRS)
         changed = before != found.keys()
         for pair in before - found.keys():
-            self._part(pair)
+            self._remove_pair(pair)
         for pair in found if changed else ():
             for one in pair:
                 self._touching.setdefault(one, set()).add(pair)
         self._pairs.update(found)
         return changed
 
-    def _part(self, pair: _Pair) -> None:
+    def _remove_pair(self, pair: _Pair) -> None:
         """Remove the pair of two surfaces that no longer touch."""
         self._pairs.pop(pair, None)
         for one in pair:
@@ -203,11 +203,15 @@ class FrictionBalance(StepHelper):
 
 
 class _Kind(NamedTuple):
-    """Surfaces with the same stored value; `never`: they do not bounce by themselves."""
+    """Surfaces with the same stored value.
+
+    Attributes:
+        never_bounces: whether the threshold prevents bounces, unless the other one allows them.
+    """
 
     moves: bool
     restitution: float
-    never: bool
+    never_bounces: bool
 
 
 class _Bouncing(NamedTuple):
@@ -245,9 +249,9 @@ class PairRestitution(StepHelper):
             surface = surface_coefficients.of_link(part.link)
             if surface.restitution > 0.0:
                 self._changed = True
-                never = surface.bounce_threshold >= surface_coefficients.NEVER_BOUNCES
+                never_bounces = surface.bounce_threshold >= surface_coefficients.NEVER_BOUNCES
                 self._surfaces[uid, part.index] = _Bouncing(
-                    _Kind(body.moves, surface.restitution, never), surface.bounce_threshold,
+                    _Kind(body.moves, surface.restitution, never_bounces), surface.bounce_threshold,
                     body.model_id)
                 self._stored[uid, part.index] = surface_coefficients.restitution(surface)
 
@@ -269,38 +273,40 @@ class PairRestitution(StepHelper):
             return
         self._parameters.set_slowest_bounce(min(each.threshold for each in
                                                 self._surfaces.values()))
-        values = self._solved()
+        values = self._fit_kinds()
         for node, surface in self._surfaces.items():
             value = values.get(surface.kind, 0.0)
             if abs(value - self._stored[node]) > 1e-9:
                 self._stored[node] = value
                 pybullet.changeDynamics(*node, restitution=value)
 
-    def _solved(self) -> Dict[_Kind, float]:
+    def _fit_kinds(self) -> Dict[_Kind, float]:
         """Return the value to store for each kind; 0 for missing kinds."""
         models: Dict[_Kind, Set[int]] = {}
         for surface in self._surfaces.values():
             models.setdefault(surface.kind, set()).add(surface.model_id)
-        if all(kind.never for kind in models):
+        if all(kind.never_bounces for kind in models):
             return {}
-        alone = sum(len(found) for kind, found in models.items() if kind.never) == 1
-        kinds = sorted(kind for kind in models if alone or not (kind.moves and kind.never))
+        one_model = sum(len(found) for kind, found in models.items() if kind.never_bounces) == 1
+        kinds = sorted(kind for kind in models
+                       if one_model or not (kind.moves and kind.never_bounces))
         few = len(kinds) <= _MOST_KINDS
         pairs = [(one, other) for one, other in itertools.combinations_with_replacement(kinds, 2)
-                 if (one.moves or other.moves) and not (one.never and other.never)
+                 if (one.moves or other.moves) and not (one.never_bounces and other.never_bounces)
                  and (few or not (one.moves and other.moves))
                  and (one is not other or len(models[one]) > 1)]
-        alones = {kind: kind.restitution for kind in kinds}
+        own = {kind: kind.restitution for kind in kinds}
         if not pairs:
-            return alones
-        values, off = _fitted(
-            pairs, [min(one.restitution, other.restitution) for one, other in pairs], {}, np.array(
-                [_AMONG_MOVING if one.moves and other.moves else 1.0 for one, other in pairs]))
+            return own
+        values, off = _fit_coefficients(
+            pairs, [min(one.restitution, other.restitution) for one, other in pairs], {},
+            np.array([_MOVING_PAIR_WEIGHT if one.moves and other.moves else 1.0
+                      for one, other in pairs]))
         worst = int(off.argmax())
-        if off[worst] > _RESTITUTION_OFF:
+        if off[worst] > _RESTITUTION_TOLERANCE:
             moving = next(kind for kind in pairs[worst] if kind.moves)
             self._misfit(min(node for node, each in self._surfaces.items()
                              if each.kind == moving)[0],
                          "may bounce off another moving model {:.0f} % off the smaller restitution:"
                          " no values fit all pairs", float(off[worst]))
-        return {**alones, **values}
+        return {**own, **values}
