@@ -47,7 +47,7 @@ from .contact_readout import read_contacts
 from .helper_set import HelperSet
 from .joint_constraints import Constraints
 from .shape_preparation import ShapePreparation
-from .state_restore import Entry, Start, inherited, keep_starts, restore, show_starts
+from .state_restore import Entry, Start, inherited, restore, show_initial_rows, store_initial_rows
 
 
 class BulletBackend:
@@ -213,11 +213,11 @@ class BulletBackend:
         starts = [(self._entry(number), pose) for number, pose in command.models]
         if command.states:
             self._build_again(starts, command.states)
-        elif len(starts) == len(self._models) and show_starts(self._readout, starts):
+        elif len(starts) == len(self._models) and show_initial_rows(self._readout, starts):
             self._deferred_starts = starts
         else:
             self._build_again(starts)
-            keep_starts(self._readout, starts)
+            store_initial_rows(self._readout, starts)
 
     def _build_deferred(self) -> None:
         """Build the bodies of a reset whose build was deferred."""

@@ -118,8 +118,9 @@ class Body:
         uses_ccd: so thin that Bullet detects its collisions continuously, along its path (CCD).
         lead_row: of its first part.
         radius: of a sphere about the centre of mass that contains a rigid body, m.
-        seen_at: its centre of mass at the last read-out; parting an overlap moves it without
-            velocity.
+        still_readouts: consecutive read-outs, with steps before them, that found it at rest.
+        last_position: of its centre of mass at the last read-out, m; split impulses move a body
+            without velocity.
         ties: how many joints connect it with other models.
         loads: how many timed forces and planar velocities act on it now.
         angular_velocity_kept: share that Bullet's damping leaves of it in a step.
@@ -140,8 +141,8 @@ class Body:
     uses_ccd: bool = False
     may_sleep: bool = True
     radius: float = 0.0
-    still: int = 0
-    seen_at: Optional[Vec3] = None
+    still_readouts: int = 0
+    last_position: Optional[Vec3] = None
     ties: int = 0
     loads: int = 0
     angular_velocity_kept: float = 1.0

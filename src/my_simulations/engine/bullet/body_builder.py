@@ -80,13 +80,13 @@ class _Tree:
 
 
 class Builder:
-    """Builds the bodies of one model; keeps all data of them that do not depend on the pose.
+    """Builds the bodies of one model; stores all data of them that do not depend on the pose.
 
     Attributes:
         model_id: the model's number.
         plans: the links of each body.
         link_rows, joint_rows: the rows of the model in the link and the joint table.
-        start: the values of these rows after it was built at a pose, for resets.
+        initial_rows: a pose, and the values of these rows after the model was built there.
     """
 
     def __init__(self, command: LoadModel, shapes: ShapeFactory) -> None:
@@ -105,7 +105,7 @@ class Builder:
                                command.first_link_row + len(command.model.links))
         self.joint_rows = slice(command.first_joint_row,
                                 command.first_joint_row + len(self._axis_rows))
-        self.start: Optional[Tuple[Pose, np.ndarray, np.ndarray]] = None
+        self.initial_rows: Optional[Tuple[Pose, np.ndarray, np.ndarray]] = None
         self._mobilities: Dict[int, float] = {}
         self.plans = [plan if self._is_rigid(plan) else in_pieces(plan, command.model)
                       for plan in plan_bodies(command.model)]

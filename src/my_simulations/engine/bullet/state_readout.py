@@ -30,8 +30,8 @@ _NO_VELOCITY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 _pose_of = pybullet.getBasePositionAndOrientation
 _velocity_of = pybullet.getBaseVelocity
 _MARGIN = 0.05     # m: motion of a body until its neighbours are searched again
-_ROUND_ROBIN = 8   # resting bodies read per read-out, regardless of neighbours
-_WORLD_SIZE = 1e9
+_READ_ANYWAY = 8   # resting bodies read in each read-out, even without a neighbour
+_WORLD_SIZE = 1e9  # m: a larger box is that of an infinite shape, as a plane
 
 
 class StateReadout(BodyObserver):
@@ -60,10 +60,10 @@ class StateReadout(BodyObserver):
         self._awake: Dict[int, Body] = {}
         self._trees: Dict[int, Body] = {}
         self._resting: Dict[int, Body] = {}
-        self._guards: Dict[int, Tuple[Tuple[float, float, float], Set[int]]] = {}
+        self._neighbours: Dict[int, Tuple[Tuple[float, float, float], Set[int]]] = {}
         self._offsets: Dict[int, Pose] = {}
-        self._patrol: List[int] = []
-        self._touched: Dict[int, Body] = {}
+        self._unread: List[int] = []
+        self._moved: Dict[int, Body] = {}
         self._stepped = False
         self._changed = False   # by `update`, since the last `read`
         self._closing: Dict[int, ClosingJoint] = {}
@@ -79,7 +79,7 @@ class StateReadout(BodyObserver):
         return row in self._closing
 
     def forget_joints(self, rows: slice) -> None:
-        """A model is gone; its rows stay as they are."""
+        """Discard the data of a removed model; its rows keep their values."""
         for row in range(rows.start, rows.stop):
             self._closing.pop(row, None)
 
@@ -93,15 +93,15 @@ class StateReadout(BodyObserver):
         self.mark_changed(body)
 
     def forget(self, body: Body) -> None:
-        """A body is gone; its rows stay as they are."""
-        for table in (self._awake, self._trees, self._resting, self._guards, self._touched):
+        """Discard the data of a removed body; its rows keep their values."""
+        for table in (self._awake, self._trees, self._resting, self._neighbours, self._moved):
             table.pop(body.uid, None)
         for part in body.parts:
             self._offsets.pop(part.row, None)
 
     def clear(self) -> None:
-        """All bodies are gone; their rows stay as they are."""
-        for table in (self._awake, self._trees, self._resting, self._guards, self._touched,
+        """Discard the data of all bodies; their rows keep their values."""
+        for table in (self._awake, self._trees, self._resting, self._neighbours, self._moved,
                       self._offsets, self._closing):
             table.clear()
 
@@ -113,15 +113,15 @@ class StateReadout(BodyObserver):
             self.mark_changed(body)
 
     def mark_changed(self, body: Body) -> None:
-        """The body was put elsewhere or given another velocity: read it until it rests again."""
-        self._touched[body.uid] = body
+        """Read a body with a new pose or velocity, also without a step, until it rests again."""
+        self._moved[body.uid] = body
         self._mark_awake(body)
 
     def _mark_awake(self, body: Body) -> None:
-        """The body may move from the next step on; as it is now, it was read already."""
-        body.still = 0
+        """Read a body after the next steps, until it rests again; its rows are correct now."""
+        body.still_readouts = 0
         self._resting.pop(body.uid, None)
-        self._guards.pop(body.uid, None)
+        self._neighbours.pop(body.uid, None)
         if body.rigid:
             self._awake[body.uid] = body
         else:
@@ -146,11 +146,11 @@ class StateReadout(BodyObserver):
         Without a step since the last read-out, only bodies changed by commands are read. A body
         counts as at rest only after a step.
         """
-        touched, self._touched = self._touched, {}
+        changed, self._moved = self._moved, {}
         rigid, trees = self._awake, self._trees
         if not self._stepped:
-            rigid = {uid: body for uid, body in touched.items() if body.rigid}
-            trees = {uid: body for uid, body in touched.items() if not body.rigid}
+            rigid = {uid: body for uid, body in changed.items() if body.rigid}
+            trees = {uid: body for uid, body in changed.items() if not body.rigid}
         if not rigid and not trees:
             self._stepped = False
             return
@@ -166,21 +166,21 @@ class StateReadout(BodyObserver):
         for body in list(trees.values()):
             self._read_tree(body)
         if self._resting and self._stepped:
-            self._read_touched()
+            self._read_woken()
 
     def read_poses(self) -> bool:
         """Update poses only; twists of rigid bodies stay those of the last `read`.
 
         The result of the next `read` does not change.
         """
-        if not self._stepped and not self._touched:
+        if not self._stepped and not self._moved:
             return self._changed
         self._read_places(list(self._awake.values()))
         self._read_rest(self._trees)
         return True
 
     def _read_places(self, todo: List[Body]) -> None:
-        """The poses of rigid bodies, and of those found moving because of them, and so on."""
+        """Read the poses of rigid bodies, of the resting bodies that they have woken, and so on."""
         pack, table = _PLACE.pack_into, self._link_bytes
         offsets, resting = self._offsets, self._resting
         while todo:
@@ -198,14 +198,14 @@ class StateReadout(BodyObserver):
                     pack(table, row * _ROW_BYTES, x, y, z, *turn)
                 else:
                     pack(table, row * _ROW_BYTES, *place_row(position, turn, offset)[0])
-                if resting and not body.still:
-                    woken.extend(self._touched_by(body.uid, position, body.radius))
+                if resting and not body.still_readouts:
+                    woken.extend(self._woken_by(body.uid, position, body.radius))
             todo = woken
 
     def _read_all(self, todo: List[Body]) -> None:
-        """Read rigid bodies, the resting bodies that they touch, and so on.
+        """Read rigid bodies, the resting bodies that they have woken, and so on.
 
-        One loop without calls: it takes most of the time of a snapshot of many bodies.
+        One loop without calls, because it takes most of the time of a read-out of many bodies.
         """
         pack, table = ROW.pack_into, self._link_bytes
         offsets, resting = self._offsets, self._resting
@@ -226,33 +226,34 @@ class StateReadout(BodyObserver):
                 else:
                     pack(table, row * _ROW_BYTES,
                          *link_row(position, turn, linear, angular, offset))
-                if vz == 0.0 and (linear, angular) == _NO_VELOCITY and body.seen_at == position:
-                    self._stands(body)
+                if (vz == 0.0 and (linear, angular) == _NO_VELOCITY
+                        and body.last_position == position):
+                    self._count_still(body)
                     continue
-                body.seen_at = position
-                body.still = 0
+                body.last_position = position
+                body.still_readouts = 0
                 if resting:
-                    woken.extend(self._touched_by(uid, position, body.radius))
+                    woken.extend(self._woken_by(uid, position, body.radius))
             todo = woken
 
-    def _stands(self, body: Body) -> None:
-        """A body was found without velocity."""
-        body.still += self._stepped
-        if body.still >= 2:
+    def _count_still(self, body: Body) -> None:
+        """Count read-outs of a body without velocity; from the second one on it is at rest."""
+        body.still_readouts += self._stepped
+        if body.still_readouts >= 2:
             self._awake.pop(body.uid, None)
-            self._guards.pop(body.uid, None)
+            self._neighbours.pop(body.uid, None)
             if body.moves:
                 self._resting[body.uid] = body
 
-    def _touched_by(self, uid: int, at: Tuple[float, float, float], radius: float) -> List[Body]:
-        """Resting bodies near a moving one that move by now; they count as awake from here on."""
-        guard = self._guards.get(uid)
-        if guard is None or max(abs(at[0] - guard[0][0]), abs(at[1] - guard[0][1]),
-                                abs(at[2] - guard[0][2])) > _MARGIN:
+    def _woken_by(self, uid: int, at: Tuple[float, float, float], radius: float) -> List[Body]:
+        """Mark resting bodies near a moving one as awake if they move. Returns these."""
+        neighbours = self._neighbours.get(uid)
+        if neighbours is None or max(abs(at[0] - neighbours[0][0]), abs(at[1] - neighbours[0][1]),
+                                     abs(at[2] - neighbours[0][2])) > _MARGIN:
             reach = radius + _MARGIN + 0.02
-            guard = (at, self._near([c - reach for c in at], [c + reach for c in at]))
-            self._guards[uid] = guard
-        return self._wake_moving(guard[1])
+            neighbours = (at, self._near([c - reach for c in at], [c + reach for c in at]))
+            self._neighbours[uid] = neighbours
+        return self._wake_moving(neighbours[1])
 
     def _near(self, low: List[float], high: List[float]) -> Set[int]:
         found = pybullet.getOverlappingObjects(low, high) or ()
@@ -266,13 +267,13 @@ class StateReadout(BodyObserver):
                 candidates.discard(uid)
             elif _velocity_of(uid) != _NO_VELOCITY:
                 self._resting.pop(uid)
-                body.still = 0
+                body.still_readouts = 0
                 self._awake[uid] = body
                 woken.append(body)
         return woken
 
-    def _read_touched(self) -> None:
-        """Read bodies that trees may have touched, and a few resting bodies in any case."""
+    def _read_woken(self) -> None:
+        """Read bodies that trees may have woken, and a few resting bodies in any case."""
         woken: List[Body] = []
         for uid, tree in self._trees.items():
             for index in [BASE] + [part.index for part in tree.colliders if part.index != BASE]:
@@ -280,9 +281,9 @@ class StateReadout(BodyObserver):
                 if high[0] - low[0] < _WORLD_SIZE:
                     woken += self._wake_moving(self._near(
                         [c - 0.02 for c in low], [c + 0.02 for c in high]))
-        if not self._patrol:
-            self._patrol = list(self._resting)
-        turn, self._patrol = set(self._patrol[:_ROUND_ROBIN]), self._patrol[_ROUND_ROBIN:]
+        if not self._unread:
+            self._unread = list(self._resting)
+        turn, self._unread = set(self._unread[:_READ_ANYWAY]), self._unread[_READ_ANYWAY:]
         self._read_all(woken + self._wake_moving(turn))
 
     def _read_tree(self, body: Body) -> None:
@@ -313,18 +314,18 @@ class StateReadout(BodyObserver):
             _AXIS.pack_into(self._joint_bytes, axis.row * _AXIS.size, state[0], state[1])
 
     def may_have_moved(self, body: Body) -> bool:
-        """Whether a body may be elsewhere than its rows say."""
+        """Whether the state of a body may differ from its rows."""
         return body.uid in self._awake or body.uid in self._trees
 
     def offset(self, row: int) -> Optional[Pose]:
-        """The link frame of a row in its centre of mass; None if they are the same."""
+        """Return the link frame in the frame of its centre of mass; None if they are equal."""
         return self._offsets.get(row)
 
     def row(self, row: int) -> bytes:
-        """A link row as it was read last, as raw doubles."""
+        """Return a link row of the last read-out as raw doubles."""
         return bytes(self._link_bytes[row * _ROW_BYTES:(row + 1) * _ROW_BYTES])
 
     def tables(self) -> Tuple[memoryview, memoryview]:
-        """The used rows as raw bytes, for the ring."""
+        """Return the used rows of both tables as raw bytes, for the ring."""
         return (self._link_bytes[:self.used_links * _ROW_BYTES],
                 self._joint_bytes[:self.used_joints * _AXIS.size])

@@ -1,4 +1,4 @@
-"""Models that begin where others, or they themselves before a crash or a reset, were."""
+"""Restore the states of models: after a reset or a crash, or from the model that they replace."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -35,30 +35,31 @@ Start = Tuple[Entry, Pose]
 """A model, and the initial world pose of its frame."""
 
 
-def keep_starts(readout: StateReadout, starts: Sequence[Start]) -> None:
-    """Store the rows of models that were just built; no step may have been made since.
+def store_initial_rows(readout: StateReadout, starts: Sequence[Start]) -> None:
+    """Store the table rows of models that were just built; no step may have been made since.
 
     The same builder and the same pose give the same rows, bit for bit.
     """
     readout.read()
     for entry, pose in starts:
         built = entry.builder
-        built.start = (pose, readout.links[built.link_rows].copy(),
-                       readout.joints[built.joint_rows].copy())
+        built.initial_rows = (pose, readout.links[built.link_rows].copy(),
+                              readout.joints[built.joint_rows].copy())
 
 
-def show_starts(readout: StateReadout, starts: Sequence[Start]) -> bool:
+def show_initial_rows(readout: StateReadout, starts: Sequence[Start]) -> bool:
     """Write the stored rows to the tables; return False and write none if any is missing."""
-    if any(entry.builder.start is None or entry.builder.start[0] != pose for entry, pose in starts):
+    if any(entry.builder.initial_rows is None or entry.builder.initial_rows[0] != pose
+           for entry, pose in starts):
         return False
     for built in (entry.builder for entry, _ in starts):
-        if built.start is not None:
-            _, readout.links[built.link_rows], readout.joints[built.joint_rows] = built.start
+        if built.initial_rows is not None:
+            _, readout.links[built.link_rows], readout.joints[built.joint_rows] = built.initial_rows
     return True
 
 
 def restore(entry: Entry, state: ModelState) -> None:
-    """Give a model just built the state; links and joint axes in the description's order."""
+    """Set the state of a new model; its links and joint axes are in the description's order."""
     rates = {row.name: values
              for row, values in zip(axis_rows(entry.model), state.joints)}
     for body in entry.bodies:
@@ -76,7 +77,7 @@ def restore(entry: Entry, state: ModelState) -> None:
 
 
 def _restore_base(body: Body, link_pose: Pose) -> None:
-    """Put the fixed base where it must be for the first link to have its pose."""
+    """Set the pose of the fixed base so that the first link has its pose."""
     base = Pose(*pybullet.getBasePositionAndOrientation(body.uid))
     part = body.parts[0]
     base_from_com = compose(inverse(base), Pose(*read_com_pose(body.uid, part.index)))
@@ -88,13 +89,13 @@ def _restore_base(body: Body, link_pose: Pose) -> None:
 
 def set_ball_joint(body: Body, ball: bodies.BallJoint, base: Pose,
              state_of: Callable[[int], LinkState]) -> None:
-    """Give a ball joint the angles and rates of the links that it connects.
+    """Set orientation and rate of a ball joint to match the links that it connects.
 
     Args:
         body: whose joint it is.
         ball: the joint.
         base: the pose of a fixed base.
-        state_of: gives a link row's state.
+        state_of: returns the state of a link row.
     """
     child = state_of(ball.child.row)
     mine, spin, theirs = ball.child.com_pose(child.pose), child.twist.angular, base
@@ -110,9 +111,14 @@ def set_ball_joint(body: Body, ball: bodies.BallJoint, base: Pose,
 
 def inherited(before: Entry, model: Model, frame: Pose, state_of: Callable[[int], LinkState],
               axis_table: np.ndarray) -> ModelState:
-    """The state of `before`, whose frame is at `frame`, for the links and joints `model` has.
+    """Return the state of a model for another one that replaces it, by names of links and joints.
 
-    `state_of` gives a link row's state; `axis_table` is (rows, 2): positions and rates.
+    Args:
+        before: the model to be replaced, with its frame at `frame`.
+        model: the new one. Its links and joints without a predecessor have their initial state.
+        frame: see `before`.
+        state_of: returns the state of a link row.
+        axis_table: (rows, 2), positions and rates.
     """
     rows = {link.name: before.first_row + n for n, link in enumerate(before.model.links)}
     poses = {link.name: link.pose for link in before.model.links}

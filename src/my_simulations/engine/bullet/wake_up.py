@@ -16,7 +16,7 @@ from .approach import hull
 from .bodies import Body
 
 _REACH = 0.02  # m: Bullet makes contacts slightly before surfaces touch
-_WORLD_SIZE = 1e9
+_WORLD_SIZE = 1e9  # m: a larger box is that of an infinite shape, as a plane
 
 _AxisAlignedBox = Tuple[Vec3, Vec3]
 """The least and the largest corner, m, world frame."""
@@ -25,13 +25,14 @@ _AxisAlignedBox = Tuple[Vec3, Vec3]
 class WakeUp:
     """Wakes bodies and their contact islands."""
 
-    def __init__(self, bodies: Dict[int, Body], touch: Callable[[Body], None]) -> None:
+    def __init__(self, bodies: Dict[int, Body], notify: Callable[[Body], None]) -> None:
+        """`notify` is called with each body that is woken, also with those that cannot sleep."""
         self._bodies = bodies
-        self._touch = touch
+        self._notify = notify
 
     def everything(self) -> None:
         for body in self._bodies.values():
-            self._rouse(body)
+            self._wake(body)
 
     def around(self, targets: Iterable[Body], awake: bool = False) -> None:
         """Wake the targets, the bodies that overlap them, and so on through moving bodies.
@@ -44,16 +45,16 @@ class WakeUp:
         while queue:
             body = queue.pop()
             if body.uid not in woken:
-                self._rouse(body)
+                self._wake(body)
             for near in self._moving_near(body, seen):
                 seen.add(near.uid)
                 queue.append(near)
 
-    def _rouse(self, body: Body) -> None:
+    def _wake(self, body: Body) -> None:
         if body.sleeps:
             pybullet.changeDynamics(body.uid, BASE,
                                     activationState=pybullet.ACTIVATION_STATE_WAKE_UP)
-        self._touch(body)
+        self._notify(body)
 
     def _moving_near(self, body: Body, seen: Set[int]) -> List[Body]:
         """Return the moving bodies, except those in `seen`, that overlap a link of a body."""
@@ -72,7 +73,7 @@ class WakeUp:
 
 
 def _link_boxes(body: Body) -> List[_AxisAlignedBox]:
-    """Return the bounding boxes of the links of a body, which are a little larger, in m."""
+    """Return the bounding boxes of the links of a body, enlarged by `_REACH`."""
     found: List[_AxisAlignedBox] = []
     for uid in body.uids:
         for index in sorted({BASE, *(part.index for part in body.colliders)}):
