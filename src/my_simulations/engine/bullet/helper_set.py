@@ -178,7 +178,7 @@ class HelperSet:
 
     def _holding(self, row: int) -> float:
         """Return the effort, N m or N, with which the motor or brake of a joint row acts."""
-        return max(self.motors.effort_of(row), self.forces.servos.motor_strength(row))
+        return max(self.motors.effort_of(row), self.forces.servos.motor_effort_of(row))
 
     def _notify(self, event: BodyEvent, body: Body) -> None:
         """Pass an event to those that handle it, in the order of the helpers."""

@@ -14,8 +14,8 @@ from ..servo_law import FOLLOW, Advance, ServoLaw
 from .bodies import Axis, Body
 from .joint_axes import specs_of
 
-_STRONG = 1e7   # N or N m, of a motor without a limit
-_FAST = 1e5     # rad/s or m/s, likewise
+_UNLIMITED_EFFORT = 1e7   # N or N m: the limit of a motor without one
+_UNLIMITED_RATE = 1e5     # rad/s or m/s: the same for its rate
 
 
 class _Loops:
@@ -26,20 +26,22 @@ class _Loops:
 
     def __init__(self, uid: int) -> None:
         self.uid = uid
-        self.efforts, self.motors = _Kind(), _Kind()
-        self.forces: List[float] = []   # of the motors
+        self.efforts, self.motors = _ServoList(), _ServoList()
+        self.motor_efforts: List[float] = []   # largest efforts of `motors`, N m or N
 
     def add(self, axis: Axis, law: ServoLaw) -> None:
-        kind = self.efforts if law.gives_effort else self.motors
-        kind.indices.append(axis.index)
-        kind.rows.append(axis.row)
-        kind.laws.append(law)
-        kind.advances.append(law.advance)
-        if kind is self.motors:
-            self.forces.append(_strength(law.servo))
+        servos = self.efforts if law.gives_effort else self.motors
+        servos.indices.append(axis.index)
+        servos.rows.append(axis.row)
+        servos.laws.append(law)
+        servos.advances.append(law.advance)
+        if servos is self.motors:
+            self.motor_efforts.append(_largest_effort(law.servo))
 
 
-class _Kind:
+class _ServoList:
+    """Servos of one body: PyBullet's joint indices, axis rows, laws, and their functions."""
+
     def __init__(self) -> None:
         self.indices: List[int] = []
         self.rows: List[int] = []
@@ -102,11 +104,11 @@ class JointServos:
     def moving(self) -> Set[int]:
         """PyBullet's numbers of bodies that move along a spline."""
         return {uid for uid, loops in self._busy.items()
-                if any(law.moves(self._step) for kind in (loops.efforts, loops.motors)
-                       for law in kind.laws)}
+                if any(law.moves(self._step) for servos in (loops.efforts, loops.motors)
+                       for law in servos.laws)}
 
     def set(self, servos: Iterable[JointServo], dt: float) -> None:
-        """Set these; others stay. Raises CommandRefusedError, and then none is set."""
+        """Set some servos; others stay. Raises CommandRefusedError before any servo is set."""
         self._dt = dt
         changed = list(servos)
         for servo in changed:
@@ -118,7 +120,7 @@ class JointServos:
             law = self._laws.get(servo.row)
             if law is not None and law.servo == servo.held_at(law.servo.target):
                 continue
-            servo = _begun(servo, body, axis)
+            servo = _with_present_target(servo, body, axis)
             if not servo.drive:
                 self._laws.pop(servo.row, None)
                 self._release(body, axis)
@@ -162,7 +164,7 @@ class JointServos:
             if law is not None:
                 law.reset_after_jump()
                 if law.servo.holds:
-                    law.change(_begun(law.servo, body, axis))
+                    law.change(_with_present_target(law.servo, body, axis))
                     self._drive(body, axis)
 
     def forget(self, body: Body) -> None:
@@ -174,8 +176,8 @@ class JointServos:
     def act(self, efforts: Dict[int, float], shared: AbstractSet[int], step: int) -> None:
         """Apply the servos in the step that begins at count `step`.
 
-        `shared` are PyBullet's numbers of bodies with other efforts. For these the efforts are
-        added to `efforts`, N m or N by row. For other bodies they are applied in one call each.
+        `shared` are PyBullet's numbers of bodies on which other efforts act. For these the efforts
+        of servos are added to `efforts`, N m or N by row. For all others they are applied here.
         """
         self._step = step
         for uid, loops in self._busy.items():
@@ -191,7 +193,7 @@ class JointServos:
             if loops.motors.rows:
                 pybullet.setJointMotorControlArray(
                     uid, loops.motors.indices, pybullet.VELOCITY_CONTROL,
-                    targetVelocities=loops.motors.advanced(uid, step), forces=loops.forces)
+                    targetVelocities=loops.motors.advanced(uid, step), forces=loops.motor_efforts)
 
     def effort_of(self, row: int) -> float:
         """Return the effort of a servo in the last step, N m or N; 0 if it drives a motor."""
@@ -199,10 +201,10 @@ class JointServos:
         return law.last if law is not None and law.gives_effort and (
             row not in self._loop_rows) else 0.0
 
-    def motor_strength(self, row: int) -> float:
-        """Return the most effort of the motor that a servo drives, N m or N; 0 for none."""
+    def motor_effort_of(self, row: int) -> float:
+        """Return the largest effort of the motor that a servo drives, N m or N; 0 for none."""
         law = self._laws.get(row)
-        return _strength(law.servo) if law is not None and not law.gives_effort and (
+        return _largest_effort(law.servo) if law is not None and not law.gives_effort and (
             row not in self._loop_rows) else 0.0
 
     def efforts(self, rows: Sequence[int]) -> Tuple[float, ...]:
@@ -236,20 +238,22 @@ class JointServos:
         if servo.drive == "velocity":
             rate = max(-servo.most_rate, min(servo.most_rate, servo.target))
             pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.VELOCITY_CONTROL,
-                                           targetVelocity=rate, force=_strength(servo))
+                                           targetVelocity=rate, force=_largest_effort(servo))
         else:
             pybullet.setJointMotorControl2(
                 body.uid, axis.index, pybullet.POSITION_CONTROL,
                 targetPosition=max(servo.lower, min(servo.upper, servo.target)),
-                positionGain=FOLLOW, velocityGain=1.0, force=_strength(servo),
-                maxVelocity=servo.most_rate if servo.most_rate < math.inf else _FAST)
+                positionGain=FOLLOW, velocityGain=1.0, force=_largest_effort(servo),
+                maxVelocity=servo.most_rate if servo.most_rate < math.inf else _UNLIMITED_RATE)
 
 
-def _begun(servo: JointServo, body: Body, axis: Axis) -> JointServo:
+def _with_present_target(servo: JointServo, body: Body, axis: Axis) -> JointServo:
+    """Return a servo that `holds` with the present position of its axis as target."""
     if not servo.holds:
         return servo
     return servo.held_at(float(pybullet.getJointState(body.uid, axis.index)[0]))
 
 
-def _strength(servo: JointServo) -> float:
-    return servo.most_effort if servo.most_effort < math.inf else _STRONG
+def _largest_effort(servo: JointServo) -> float:
+    """Return the largest effort of the motor of a servo, N m or N."""
+    return servo.most_effort if servo.most_effort < math.inf else _UNLIMITED_EFFORT
