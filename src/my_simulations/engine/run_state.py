@@ -79,12 +79,12 @@ class RunState:
 
     Attributes:
         resting: bodies that sleep, or that are held because they stand still: by their first link
-            row the place at which they rest.
+            row the pose in which they rest.
         servos: by joint row.
         loops: PID loops of timed efforts, by force id.
         dampers: by the first joint row of the body.
-        parting_end: the step at which overlaps of loaded models are no longer parted without
-            velocity; None if they are not now, PARTING_NOT_BEGUN before the first step.
+        parting_end: the step at which split impulses end, which separate overlaps of loaded models
+            without velocity; None if they do not act, PARTING_NOT_BEGUN before the first step.
         stopped: first link rows of bodies that were stopped because they went too far.
     """
 

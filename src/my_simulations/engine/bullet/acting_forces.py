@@ -45,7 +45,8 @@ def note_contacts(found: Acting, body: Body) -> None:
     owners = body.owners
     for contact in pybullet.getContactPoints() if any(
             contact[FRICTION] or contact[FRICTION_2] for contact in mine) else mine:
-        if contact[DISTANCE] > 0.0 or body.uid not in contact[1:3]:   # apart: of an older step
+        # Separated surfaces have the force of an older step.
+        if contact[DISTANCE] > 0.0 or body.uid not in contact[1:3]:
             continue
         force = add(scale(contact[NORMAL], contact[LOAD]), friction_force(contact))
         if contact[BODY] == body.uid:
@@ -56,7 +57,7 @@ def note_contacts(found: Acting, body: Body) -> None:
 
 
 def note_constraints(found: Acting, body: Body, links: Mapping[int, Motion]) -> None:
-    """Add the forces of loop and tie constraints on the links of a body."""
+    """Add the forces of constraints on the links of a body, except those of gears."""
     for n in range(pybullet.getNumConstraints()):
         number = pybullet.getConstraintUniqueId(n)
         info = pybullet.getConstraintInfo(number)
@@ -67,7 +68,7 @@ def note_constraints(found: Acting, body: Body, links: Mapping[int, Motion]) -> 
 
 def constraint_forces(number: int, body: Body, index: int, link: Motion
                       ) -> Tuple[Vec3, Vec3, Vec3]:
-    """Force, where it acts, and torque of a constraint on a link that it holds; world axes."""
+    """Return force, point of action and torque of a constraint on one of its links; world axes."""
     info = pybullet.getConstraintInfo(number)
     force, torque = _on_the_second(info, pybullet.getConstraintState(number))
     sign, pivot = (1.0, info[7]) if (info[2], info[3]) == (body.uid, index) else (-1.0, info[6])
@@ -76,7 +77,7 @@ def constraint_forces(number: int, body: Body, index: int, link: Motion
 
 
 def _on_the_second(info: Sequence[Any], state: Sequence[float]) -> Tuple[Vec3, Vec3]:
-    """Force and torque that a constraint exerts on its second body, N and N m, world axes.
+    """Return force and torque of a constraint on its second body, N and N m, world axes.
 
     Source: the rows of Bullet's btMultiBodyPoint2Point, FixedConstraint and SliderConstraint.
     """

@@ -20,13 +20,13 @@ class Agenda(Generic[Key]):
         self._heap: List[Tuple[int, Key]] = []   # entries that differ from `_steps` are outdated
 
     def plan(self, key: Key, step: int) -> None:
-        """Check a body or link in this step, and not in the one planned before; 0: the next."""
+        """Plan the check of a body or link in a step, instead of an earlier plan; 0: the next."""
         if self._steps.get(key) != step:
             self._steps[key] = step
             heappush(self._heap, (step, key))
 
     def pop(self, key: Key, _: None = None) -> None:
-        """Check a body or link no longer."""
+        """Cancel the check of a body or link; arguments as of `dict.pop` (`body_tables`)."""
         self._steps.pop(key, None)
 
     def at(self, key: Key) -> int:
@@ -42,7 +42,7 @@ class Agenda(Generic[Key]):
         return heap[0][0] if heap else FAR
 
     def take(self, step: int) -> List[Key]:
-        """Return what is to be checked in this step, sorted; no check of these is planned then."""
+        """Return the keys to check in this step, sorted, and remove their plans."""
         found: List[Key] = []
         while self.next <= step:
             key = heappop(self._heap)[1]

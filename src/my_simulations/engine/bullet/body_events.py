@@ -1,4 +1,4 @@
-"""Events of bodies: what commands and helpers did to a body between two moments of a run."""
+"""Events of bodies: changes by commands and helpers, between steps or in them."""
 from __future__ import annotations
 
 from enum import Enum
@@ -24,7 +24,7 @@ class BodyEvent(Enum):
     PLANAR_VELOCITY_CHANGED = "planar velocity changed"
     """It moves with another planar velocity from the next step on."""
     FIXED_AT_REST = "fixed at rest"
-    """An articulated body that stood still is put back to its pose from now on."""
+    """An articulated body that stood still is set back to its pose periodically from now on."""
     RELEASED = "released"
     """It is no longer fixed at rest."""
 

@@ -1,6 +1,6 @@
-"""Positions and rates of joints that close loops, which have no axis in Bullet.
+"""Compute positions and rates of joints that close loops, which have no axis in Bullet.
 
-They follow from the links that they connect, as all joints' do in Gazebo.
+They follow from the states of the connected links, as for all joints in Gazebo.
 """
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class ClosingJoint:
     """One joint of a loop, with a row of its own in the joint table.
 
     Args:
-        joint: one with a single axis.
+        joint: has a single axis.
         model: its model.
         place: the pose of the model's frame where it was built.
         first_link: row of the model's first link.
@@ -31,7 +31,7 @@ class ClosingJoint:
         self._joint = joint
         self._rows = {link.name: first_link + n for n, link in enumerate(model.links)
                       if link.name in (joint.parent, joint.child)}
-        # Of a joint to the world, as the links are then in the world; else in the model.
+        # Link poses at position 0: in the world for a joint to the world, else in the model.
         frame = place if WORLD in (joint.parent, joint.child) else Pose()
         self._at_zero = {link.name: compose(frame, link.pose) for link in model.links
                          if link.name in self._rows}
@@ -63,7 +63,7 @@ class ClosingJoint:
 
 def closing_joints(names: Sequence[str], model: Model, place: Pose, first_link: int,
                    first_row: int) -> List[ClosingJoint]:
-    """Those of the named joints of a model that have one axis and a child in it."""
+    """Return those of the named joints that have one axis and a child in the model."""
     return [ClosingJoint(row.joint, model, place, first_link, first_row + n)
             for n, row in enumerate(axis_rows(model))
             if row.joint.name in names and has_position(row.joint) and row.joint.child != WORLD]

@@ -1,4 +1,4 @@
-"""Stops models that a wrong gain, inertia or overlap has thrown out of the world.
+"""Stop bodies that a wrong gain, inertia or overlap has thrown out of the world.
 
 A body is stopped if, since it was last put somewhere, it went further than `RANGE` or became
 faster than `SPEED`. It is then kept in place, at rest, until it is moved by a command, reset or
@@ -21,19 +21,26 @@ from .rest import put_at_rest, read_rest_pose
 from .step_helper import FAR, StepHelper, next_multiple
 
 RANGE = 1e4
-"""m."""
+"""Largest distance, m, from where a body was put."""
 SPEED = 343.0
-"""m/s: the speed of sound in air at 20 degrees Celsius."""
+"""Largest speed, m/s: that of sound in air at 20 degrees Celsius."""
 
 _PERIOD_S = 0.2        # of sim time between two checks of all bodies
 _LEAST_GYRATION = 1e-3  # m, of a radius of gyration: smaller ones are mistakes of units
 _MASS_RATIO = 1000.0    # of neighbouring links
 _FALL = 0.02            # relative difference from a free fall that still counts as one
-_FAST_JOINT = 100.0     # rad/s or m/s
+_FAST_JOINT = 100.0     # rad/s or m/s: faster than motors turn joints
 
 
 class _Start(NamedTuple):
-    """Where a body was put, at which step, how fast, and how fast it may become."""
+    """Where a body was last put.
+
+    Attributes:
+        place: its position, m.
+        velocity: with which it was put there, m/s.
+        step: the step count then.
+        limit: the speed above which it is stopped, m/s.
+    """
 
     place: Vec3
     velocity: Vec3
@@ -128,13 +135,13 @@ class DivergenceStop(StepHelper):
 
     def _cause(self, body: Body, start: _Start, velocity: Vec3, elapsed: float,
                gravity: Vec3) -> str:
-        """A clause that names the likely cause, of those that files and users can correct."""
+        """Return a clause that names the likely cause."""
         fall = subtract(subtract(velocity, start.velocity), scale(gravity, elapsed))
         if norm(fall) < _FALL * norm(velocity) and norm(gravity) > 0.0:
             return "nothing is below it, so it fell freely"
-        odd = _odd_inertia(body)
-        if odd:
-            return odd
+        implausible = _implausible_inertia(body)
+        if implausible:
+            return implausible
         axis = _fastest(body)
         if axis:
             return f"the gain or effort that drives joint '{axis.name}' is too high"
@@ -143,8 +150,8 @@ class DivergenceStop(StepHelper):
         return "it overlapped another body, or what touches it is driven too fast"
 
 
-def _odd_inertia(body: Body) -> str:
-    """A clause about a link whose inertia cannot be meant; "" if there is none."""
+def _implausible_inertia(body: Body) -> str:
+    """Return a clause about a link with an implausible inertia; "" if there is none."""
     moving = [part for part in body.parts if part.mass > 0.0]
     for part in moving:
         if sqrt(max(part.moments) / part.mass) < _LEAST_GYRATION:
@@ -158,6 +165,6 @@ def _odd_inertia(body: Body) -> str:
 
 
 def _fastest(body: Body) -> Optional[Axis]:
-    """The joint axis with the highest rate, if that is beyond what motors reach."""
+    """Return the joint axis with the highest rate if that is above `_FAST_JOINT`."""
     rates = [abs(pybullet.getJointState(body.uid, axis.index)[1]) for axis in body.axes]
     return body.axes[rates.index(max(rates))] if rates and max(rates) > _FAST_JOINT else None

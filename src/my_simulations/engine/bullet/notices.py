@@ -21,7 +21,7 @@ class Notices:
         self._models = models
         self._bodies = bodies_by_uid
         self._events: List[Event] = []
-        self._reported: Set[Union[int, str]] = set()   # models that diverged, texts of misfits
+        self._reported: Set[Union[int, str]] = set()   # ids of models, texts of misfits
 
     def taken(self) -> List[Event]:
         """Return the events since the last call."""

@@ -44,20 +44,19 @@ from .wake_up import WakeUp
 _ROW = struct.Struct(f"={LINK_WIDTH}d")
 
 _NEAR = 2e-5
-"""m and rad: a pose as near as this to one that the joint allows is meant to be that one. Saved
-poses have six digits."""
-_SAME = 1e-12
+"""m and rad: a pose is valid if the joint allows one this near; saved poses have six digits."""
+_SAME = 1e-12   # m and rad: rounding errors
 
 _TYPE, _AXIS, _PARENT = 2, 13, 16     # of pybullet.getJointInfo
 
 
 class StateSetter:
-    """Sets poses, velocities and joint positions of what is in the world."""
+    """Sets poses and velocities of models, links and joints."""
 
     def __init__(self, rows: Dict[int, Tuple[Body, Part]], axes: Dict[int, Tuple[Body, Axis]],
                  readout: StateReadout, row_reader: RowReader, waker: WakeUp,
                  notify: Callable[[BodyEvent, Body], None]) -> None:
-        """`rows` and `axes` are read, never changed: the bodies with rows in the tables.
+        """`rows` and `axes` map table rows to bodies; they are read only.
 
         `notify` is called after the state of a body was set.
         """
@@ -69,20 +68,20 @@ class StateSetter:
         self._notify = notify
 
     def link_state(self, row: int) -> LinkState:
-        """Of the link at a row, as last read."""
+        """Return the state of the link at a row, as of the last read-out."""
         return _link_state(self._readout.links[row].tolist())
 
     def model_pose(self, entry: Entry) -> Pose:
-        """Where the model frame was when the tables were last read."""
+        """Return the pose of a model frame as of the last read-out."""
         return _model_pose(entry, lambda row: self.link_state(row).pose)
 
     def present_model_pose(self, entry: Entry) -> Pose:
-        """Where the model frame is now, between any two steps."""
+        """Return the present pose of a model frame."""
         return _model_pose(entry, lambda row: _link_state(
             _ROW.unpack(self._row_reader.read_links((row,)))).pose)
 
     def set_model(self, command: SetModelState, entry: Entry) -> None:
-        """Move all bodies of a model. Raises CommandRefusedError."""
+        """Set the pose and twist of a model. Raises CommandRefusedError."""
         self._readout.read()
         pose, twist = self._in_world(command.pose, command.twist, command.frame)
         if not entry.model.links:
@@ -97,7 +96,7 @@ class StateSetter:
         self._waker.around(entry.bodies, awake=True)
 
     def set_link(self, command: SetLinkState) -> None:
-        """Move the body of a link. Raises CommandRefusedError."""
+        """Set the pose and twist of the body of a link. Raises CommandRefusedError."""
         if command.row not in self._rows:
             raise RemovedError("the link no longer exists")
         self._readout.read()
@@ -112,9 +111,10 @@ class StateSetter:
         self._waker.around([body], awake=True)
 
     def set_joints(self, command: SetJoints) -> None:
-        """Set joint axes; all are checked before the first moves. Raises CommandRefusedError.
+        """Set positions and rates of joint axes; all are checked before any is set.
 
-        Those that close loops follow from the others.
+        Joints that close loops are ignored: they follow from the others. Raises
+        CommandRefusedError, RemovedError.
         """
         for row, position, rate in command.joints:
             if row not in self._axes and not self._readout.closes(row):
@@ -130,7 +130,7 @@ class StateSetter:
             self._notify(BodyEvent.STATE_SET, body)
 
     def put_back(self, body: Body) -> None:
-        """Put a body whose state is no number back where it last was one, at rest."""
+        """Put a body whose state is not finite back to its last finite pose, at rest."""
         last = self.link_state(body.parts[0].row)
         if body.base is not None:
             bodies.set_pose(body, last.pose)
@@ -187,7 +187,7 @@ class StateSetter:
 
 
 def _link_state(values: Sequence[float]) -> LinkState:
-    """The state in a row of the link table."""
+    """Return the state in a row of the link table."""
     return LinkState(Pose((values[0], values[1], values[2]),
                           (values[3], values[4], values[5], values[6])),
                      Twist((values[7], values[8], values[9]),
@@ -195,7 +195,7 @@ def _link_state(values: Sequence[float]) -> LinkState:
 
 
 def _model_pose(entry: Entry, link_pose: Callable[[int], Pose]) -> Pose:
-    """The pose of the model frame by that of its canonical link, which `link_pose` reads."""
+    """Return the pose of a model frame; `link_pose` returns that of a link row."""
     if not entry.model.links:
         return entry.pose
     lead = _canonical(entry)
@@ -203,13 +203,16 @@ def _model_pose(entry: Entry, link_pose: Callable[[int], Pose]) -> Pose:
 
 
 def _canonical(entry: Entry) -> int:
-    """Which link carries the model's frame."""
+    """Return the number of the canonical link, which carries the frame of the model."""
     carrier = entry.model.frame_link
     return next((n for n, link in enumerate(entry.model.links) if link is carrier), 0)
 
 
 def _carried(lead: LinkState, target: Pose, at: Vec3, twist: Optional[Twist]) -> Twist:
-    """The twist at `target` of a body that moves with `twist` in `at`; None: keep, turned."""
+    """Return the twist at `target` of a body with `twist` at the point `at`.
+
+    None keeps the twist of `lead`, rotated with the body.
+    """
     if twist is None:
         turn = multiply(target.orientation, conjugate(lead.pose.orientation))
         return Twist(rotate(turn, lead.twist.linear), rotate(turn, lead.twist.angular))
@@ -217,20 +220,23 @@ def _carried(lead: LinkState, target: Pose, at: Vec3, twist: Optional[Twist]) ->
 
 
 def _first_joints(body: Body) -> Dict[int, Optional[Axis]]:
-    """Of a body with a fixed base: the indices of the joints next to it, with their axes."""
+    """Return the joints between a fixed base and its children: indices, and axes if any."""
     axes = {axis.index: axis for axis in body.axes}
     return {index: axes.get(index) for index in range(pybullet.getNumJoints(body.uid))
             if pybullet.getJointInfo(body.uid, index)[_PARENT] == BASE}
 
 
 def _first_rates(body: Body, twist: Twist) -> Dict[int, float]:
-    """The rates, rad/s or m/s, of first joints whose links move with `twist`, by joint index."""
+    """Return the rates of first joints for a twist of their links, rad/s or m/s by joint index."""
     return {index: _along(body, index, twist)[0]
             for index, axis in _first_joints(body).items() if axis is not None}
 
 
 def _along(body: Body, index: int, moved: Twist) -> Tuple[float, bool]:
-    """Return the motion of a joint for that of its link, rad or m, or rates; whether it turns."""
+    """Return the motion or rate of a joint for that of its link, and whether the joint turns.
+
+    rad or m; rad/s or m/s.
+    """
     info = pybullet.getJointInfo(body.uid, index)
     turns: bool = info[_TYPE] == pybullet.JOINT_REVOLUTE
     direction = rotate(read_com_pose(body.uid, index)[1], info[_AXIS])
@@ -249,7 +255,7 @@ def _move_by_joints(body: Body, way: Pose) -> bool:
         after = compose(way, before)
         if _is_near(before, after, _SAME if axis is not None else _NEAR):
             continue
-        # The half of a screw that turns does not say where its link is.
+        # The rotating half of a screw does not determine the pose of its link.
         if axis is not None and axis.follower is None:
             start: float = pybullet.getJointState(body.uid, index)[0]
             done.append((axis, start))
