@@ -43,19 +43,19 @@ from .step_helper import StepHelper
 from .surface_coefficients import of_link, restitution
 from .world_parameters import LEAST_BOUNCE, Accuracy, WorldParameters
 
-_DEEP = 1.8e-3       # m: allowed penetration in one step of 1 ms or less
-_LEAST = 3e-5        # m, for bouncing bodies: below it Bullet may brake by 1e-5 m before contact
-_DEEPEST = 3.0       # largest factor of the depth for longer steps, else slow rolling is fast
-_AHEAD_S = 0.016     # s between two checks of a fast or flying body
-_AHEAD = 16          # the same in steps, at most
-_MOVES_EVERY = 16    # steps between two checks of whether a body that moves flies
-_RESTS_EVERY = 64    # the same for a body at rest
-_SELDOM = 256        # steps between two checks of any other body, at most
-_RESTS = 0.03        # m/s: a body in free fall is faster after 3 ms
-_BOUNCE = 8          # steps until the next check of a pair of bodies that touch
-_SOFT = 2e-3         # m/s: a slower impact does not tilt the body
-_SETTLES = 2.5       # steps of free fall: a body placed at rest on a surface gains less speed
-_TUMBLES = 5.0       # rad/s across gravity: what turns over so fast lands on a corner or an edge
+_DEPTH = 1.8e-3         # m: allowed penetration in one step of 1 ms or less
+_BOUNCING_DEPTH = 3e-5  # m, for bouncing bodies: below it Bullet may brake by 1e-5 m before contact
+_MOST_GROWTH = 3.0      # of the depth for longer steps; without it slow rolling counts as fast
+_AHEAD_S = 0.016        # s between two checks of a fast or flying body
+_AHEAD = 16             # the same in steps, at most
+_MOVES_EVERY = 16       # steps between two checks of whether a body that moves flies
+_RESTS_EVERY = 64       # the same for a body at rest
+_SELDOM = 256           # steps between two checks of any other body, at most
+_REST_SPEED = 0.03      # m/s: a body in free fall is faster after 3 ms
+_TOUCHING_EVERY = 8     # steps between two checks of a pair of bodies that touch
+_SOFT_SPEED = 2e-3      # m/s: a slower impact does not tilt the body
+_FREE_FALL_STEPS = 2.5  # steps of free fall: a body placed at rest on a surface gains less speed
+_TUMBLING_RATE = 5.0    # rad/s across gravity: what turns over so fast lands on a corner or an edge
 _FOR_IMPACTS = Accuracy(10, 1e-15)
 """With 50 iterations, a block ten times as high as wide keeps turning after it lands at 10 m/s."""
 
@@ -65,9 +65,9 @@ class _Watched:
     """A body that may hit something.
 
     Attributes:
-        arrives: step before which it can touch only bodies that fly beside it.
+        arrives: the step before which it can touch only bodies that fly beside it.
         grounded: whether it touched something at its last check.
-        seen: step of the last check at which it flew, and its velocity then, m/s.
+        last_flight: step of the last check at which it flew, and its velocity then, m/s.
         pairs: by other bodies near it, the step of the next check with that body, and the step
             before which they cannot touch.
     """
@@ -75,7 +75,7 @@ class _Watched:
     body: Body
     arrives: int = 0
     grounded: bool = False
-    seen: Optional[Tuple[int, Vec3]] = None
+    last_flight: Optional[Tuple[int, Vec3]] = None
     pairs: Dict[int, Tuple[int, int]] = field(default_factory=dict)
 
 
@@ -86,7 +86,7 @@ class _Step(NamedTuple):
         number: the count at which it begins.
         fall: speed that gravity adds in it, m/s.
         ahead: steps between two checks of a body, at most.
-        deep: allowed penetration of bodies that do not bounce, m.
+        depth: allowed penetration in it of bodies that do not bounce, m.
     """
 
     number: int
@@ -94,7 +94,7 @@ class _Step(NamedTuple):
     gravity: Vec3
     fall: float
     ahead: int
-    deep: float
+    depth: float
 
 
 @dataclass
@@ -102,21 +102,21 @@ class _Path:
     """A body before a step.
 
     Attributes:
-        deep: its allowed penetration in the step, m; inf for a slow body.
+        depth: its allowed penetration in the step, m; inf for a slow body.
         low, high: corners of its bounding box, m.
         radius: of a sphere about its centre of mass that contains it, m.
         speed: upper bound of the speed of its points until the next check, m/s.
-        late: the share of this step to undo; below 0 if the body penetrates less than `deep`.
+        undone: the share of this step to undo; below 0 if the body penetrates less than `depth`.
         touches: the contacts in this step with which it lands.
     """
 
     motion: Motion
-    deep: float
+    depth: float
     low: Vec3
     high: Vec3
     radius: float
     speed: float
-    late: float = -inf
+    undone: float = -inf
     touches: List[Touch] = field(default_factory=list)
 
 
@@ -198,7 +198,7 @@ class ImpactWatch(StepHelper):
         self._motions.clear()
         now = _Step(step, dt, gravity, norm(gravity) * dt,
                     max(1, min(_AHEAD, round(_AHEAD_S / dt))),
-                    _DEEP * min(_DEEPEST, max(1.0, dt / 1e-3)))
+                    _DEPTH * min(_MOST_GROWTH, max(1.0, dt / 1e-3)))
         for uid in self._agenda.take(step):
             touches += self._check_body(self._watched[uid], now)
         if touches:
@@ -221,16 +221,16 @@ class ImpactWatch(StepHelper):
         body, uid = watched.body, watched.body.uid
         here = self._motions.of(uid)
         bounces = uid in self._bouncing
-        deep = _LEAST if bounces else now.deep
-        speed, fast = norm(here.linear), deep / now.dt
+        depth = _BOUNCING_DEPTH if bounces else now.depth
+        speed, fast = norm(here.linear), depth / now.dt
         if bounces:
             fast = max(fast, LEAST_BOUNCE)
         if speed + now.fall < fast:
-            deep = inf
+            depth = inf
         # Bullet finds all points of two boxes by itself.
         wait = _SELDOM if body.is_sphere or not self._uneven else (
             self._steps_on_ground(watched, here, speed, now))
-        if wait and deep == inf:
+        if wait and depth == inf:
             gains = max(now.ahead, int((fast - speed) / max(now.fall, 1e-9)))
             check = now.number + min(wait, gains)
             # Checks of many bodies in the same steps cost less.
@@ -239,10 +239,10 @@ class ImpactWatch(StepHelper):
             return []
         low, high = extent(body)
         radius = self._radii.get(uid) or _radius(here.position, low, high)
-        path = _Path(here, deep, low, high, radius, speed + now.ahead * now.fall
+        path = _Path(here, depth, low, high, radius, speed + now.ahead * now.fall
                      + (0.0 if wait else norm(here.angular) * radius))
         self._agenda.plan(uid, self._check_pairs(watched, path, now, not wait))
-        if path.late > 0.0 or bounces and path.late > -1.0:
+        if path.undone > 0.0 or bounces and path.undone > -1.0:
             self._move_back(body, path, now)
         elif path.touches:
             touch = min(path.touches, key=attrgetter("gap"))
@@ -253,21 +253,21 @@ class ImpactWatch(StepHelper):
 
     def _steps_on_ground(self, watched: _Watched, here: Motion, speed: float, now: _Step) -> int:
         """Return the steps until the next check of a body on the ground; 0 if it may land flat."""
-        uid, slow = watched.body.uid, speed <= _RESTS
+        uid, slow = watched.body.uid, speed <= _REST_SPEED
         if slow and watched.grounded:
             return _SELDOM if here.linear == ZERO3 else _RESTS_EVERY
-        flew = watched.seen is not None and flies(
-            watched.body, watched.seen[1], here.linear,
-            scale(now.gravity, now.dt * (now.number - watched.seen[0])))
+        flew = watched.last_flight is not None and flies(
+            watched.body, watched.last_flight[1], here.linear,
+            scale(now.gravity, now.dt * (now.number - watched.last_flight[0])))
         if not flew and any(contact[LOAD] > 0.0
                             for contact in pybullet.getContactPoints(bodyA=uid)):
-            if watched.seen is not None:
+            if watched.last_flight is not None:
                 self._recheck_neighbours(uid, now.number)
             self._watched[uid] = _Watched(watched.body, grounded=True)
             return _MOVES_EVERY
         watched.grounded = False
-        watched.seen = (now.number, here.linear) if watched.body.rigid else None
-        if tumbles(here.angular, now.gravity, _TUMBLES):
+        watched.last_flight = (now.number, here.linear) if watched.body.rigid else None
+        if tumbles(here.angular, now.gravity, _TUMBLING_RATE):
             watched.pairs, watched.arrives = {}, now.number
             return _AHEAD
         return 0
@@ -291,11 +291,11 @@ class ImpactWatch(StepHelper):
         pairs: Dict[int, Tuple[int, int]] = {}
         for other in near:
             flat = lands and (uid in self._uneven or other in self._uneven)
-            if flat and other in self._watched and self._watched[other].seen is not None:
+            if flat and other in self._watched and self._watched[other].last_flight is not None:
                 pairs[other] = later, later   # checked again once the other body has landed
                 flat = False
             # Bodies that move together do not collide, and their closest points are expensive.
-            stops = path.deep < inf and path.deep < now.dt * (
+            stops = path.depth < inf and path.depth < now.dt * (
                 now.fall + _nearing(path.motion, self._motions.of(other), path.radius))
             if flat and watched.pairs.get(other, (0, 0))[0] > now.number:
                 pairs[other] = watched.pairs[other]
@@ -335,10 +335,10 @@ class ImpactWatch(StepHelper):
         inward = speed_in - (dot(now.gravity, normal) * dt
                              if there is AT_REST or other not in self._watched else 0.0)
         steps = float(ahead)
-        if gap > 0.0 and inward * dt > path.deep:
+        if gap > 0.0 and inward * dt > path.depth:
             steps = gap / way
             if gap < inward * dt:
-                path.late = max(path.late, 1.0 - (gap + path.deep) / (inward * dt))
+                path.undone = max(path.undone, 1.0 - (gap + path.depth) / (inward * dt))
         if not flat:
             return step + max(1, int(min(ahead, steps))), step + ahead
         nearing = there_in - dot(here.linear, normal) + norm(here.angular) * path.radius
@@ -347,8 +347,8 @@ class ImpactWatch(StepHelper):
         turning = tilt / max(dt * norm(here.angular), tilt / ahead) if tilt > 0.0 else 0.0
         if gap > 0.0:
             steps = min(steps, max(free, turning))
-        elif speed_in <= max(_SOFT, _SETTLES * now.fall):   # it rests there, or moves away
-            steps = min(ahead, max(_BOUNCE, turning))
+        elif speed_in <= max(_SOFT_SPEED, _FREE_FALL_STEPS * now.fall):   # it rests, or moves away
+            steps = min(ahead, max(_TOUCHING_EVERY, turning))
         elif tilt > 0.0:   # it lands on a corner, for which one point is enough
             steps = turning
         else:
@@ -358,14 +358,14 @@ class ImpactWatch(StepHelper):
         return step + max(1, int(steps)), step + int(min(ahead, free))
 
     def _move_back(self, body: Body, path: _Path, now: _Step) -> None:
-        """Undo the share `path.late` of the step that follows."""
-        here, dt, late = path.motion, now.dt, path.late
+        """Undo the share `path.undone` of the step that follows."""
+        here, dt, undone = path.motion, now.dt, path.undone
         linear = here.linear
         gain = scale(now.gravity, dt)
-        end = add(here.position, scale(add(linear, gain), (1.0 - late) * dt))
+        end = add(here.position, scale(add(linear, gain), (1.0 - undone) * dt))
         if body.uid in self._bouncing:
             # Restitution of an articulated body includes what gravity adds in the next step.
-            linear = subtract(linear, scale(gain, late + (0.0 if body.rigid else 1.0)))
+            linear = subtract(linear, scale(gain, undone + (0.0 if body.rigid else 1.0)))
         start = subtract(end, scale(add(linear, gain), dt))
         pybullet.resetBasePositionAndOrientation(body.uid, start, here.orientation)
         pybullet.resetBaseVelocity(body.uid, linear, here.angular)  # setting the pose resets it
