@@ -32,9 +32,9 @@ class SimClock:
         self._paused = paused
         self._manual_stepping = False
         self._loading = False
-        self._choosing = threading.Lock()  # held while `_loading` and `_paused` change together
+        self._start_lock = threading.Lock()  # for `_loading`, and `_paused` during a load
         self._steps = steps
-        self._horizon = FOREVER
+        self._step_limit = FOREVER
 
     @property
     def step(self) -> int:
@@ -63,7 +63,7 @@ class SimClock:
 
     @property
     def is_stepped_manually(self) -> bool:
-        """Whether the world goes on by `advance` alone: paused, or stepped manually."""
+        """Whether only `advance` makes steps: the world is paused or stepped manually."""
         return self._paused or self._manual_stepping
 
     def pause(self) -> int:
@@ -84,17 +84,17 @@ class SimClock:
                 self._session.call(command)
 
     def choose_while_loading(self, paused: bool) -> bool:
-        """Set whether the world that is being loaded starts paused; the engine is not asked.
+        """Set whether the world that is being loaded starts paused; the engine gets no command.
 
         Returns False, and changes nothing, if no world is being loaded.
         """
-        with self._choosing:
+        with self._start_lock:
             if self._loading:
                 self._paused = paused
             return self._loading
 
     def set_manual_stepping(self, manual: bool) -> None:
-        """Turn manual stepping on or off: the world then advances by `advance` alone."""
+        """Enable or disable manual stepping, in which only `advance` makes steps."""
         self._manual_stepping = manual
         self._session.before_advance()
         with self._session.structure_lock:
@@ -130,8 +130,8 @@ class SimClock:
 
     def resume_commands(self) -> List[Command]:
         """Commands that resume stepping; none if paused, stepped manually or loading."""
-        stands = self._paused or self._manual_stepping or self._loading
-        return [] if stands else [Run(self._horizon)]
+        is_stopped = self._paused or self._manual_stepping or self._loading
+        return [] if is_stopped else [Run(self._step_limit)]
 
     @contextlib.contextmanager
     def stopped_while_loading(self) -> Iterator[None]:
@@ -140,7 +140,7 @@ class SimClock:
         try:
             yield
         finally:
-            with self._choosing:
+            with self._start_lock:
                 self._loading = False
 
     def pause_after_recovery(self) -> None:
@@ -150,7 +150,7 @@ class SimClock:
     def begin(self, start_ns: int, step_size: float) -> None:
         """Set the step at which a limited run pauses, for a world that begins at a sim time."""
         if self._steps != FOREVER:
-            self._horizon = self.start_command(start_ns, step_size).step + self._steps
+            self._step_limit = self.start_command(start_ns, step_size).step + self._steps
 
     @staticmethod
     def start_command(start_ns: int, step_size: float) -> SetClock:

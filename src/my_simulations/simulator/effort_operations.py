@@ -59,11 +59,11 @@ class ApplyWrench:
 class _RestoreModel:
     """Inverse of `ApplyWrench`: restores states, not the clock; its inverse is the wrench."""
 
-    moment: WorldState
+    state: WorldState
     wrench: ApplyWrench
 
     def apply(self, world: Simulator) -> Operation:
-        world.states.restore(self.moment, clock=False)
+        world.states.restore(self.state, clock=False)
         return self.wrench
 
 

@@ -63,7 +63,7 @@ class Entity:
 
     @cached_property
     def reaches(self) -> List[float]:
-        """Of each link the radius about its origin that contains its shapes (`reach_of`), m."""
+        """The radius about the origin of each link that contains its shapes (`reach_of`), m."""
         return list(map(reach_of, self.model.links))
 
     @cached_property

@@ -389,12 +389,12 @@ class SetWorldPlugins:
 class RestoreState:
     """Restore captured states of all models."""
 
-    moment: WorldState
+    state: WorldState
 
     def apply(self, world: Simulator) -> Operation:
         """Restore the states; the clock keeps its time."""
         back = RestoreState(world.states.capture())
-        world.states.restore(self.moment)
+        world.states.restore(self.state)
         return back
 
 

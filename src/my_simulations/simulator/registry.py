@@ -41,7 +41,7 @@ class UnknownEntityError(CommandError):
 
 
 class NameTakenError(CommandError):
-    """Something of that name is in the world already."""
+    """Another entity of the world has that name."""
 
 
 class UnknownFrameError(CommandError):
@@ -67,7 +67,7 @@ class ReferenceFrame:
         return compose(pose, self.offset), twist
 
     def newest(self, ring: RingReader) -> Tuple[Pose, Twist]:
-        """As `state`, in the newest snapshot, of which only this is copied."""
+        """Return the `state` in the newest snapshot; only the row of its link is copied."""
         if self.row < 0:
             return self.offset, STILL
         pose, twist = ring.link(self.row)
@@ -89,10 +89,10 @@ class Registry:
         self._on_ambiguous_name = on_ambiguous_name
         self._warned: Set[Tuple[str, str]] = set()
         self._entities: Dict[str, Entity] = {}
-        # By model id, in the order of models: one that goes costs no look at the others.
+        # By model id, in the order of models: to remove one is independent of their number.
         self._plain_links: Dict[str, Dict[int, Tuple[Entity, int]]] = {}
         self._with_plugins: Dict[int, Entity] = {}
-        # By the name of a request, as long as no model comes, goes or changes.
+        # By the name of a request; cleared when a model is added, removed or changed.
         self._joints: Dict[str, Tuple[Entity, Joint, int]] = {}
         self.revision = 0
 
@@ -198,7 +198,7 @@ class Registry:
         return found
 
     def link_row_or_none(self, name: str) -> Optional[int]:
-        """The row of a link by its scoped name; None where there is none."""
+        """The row of a link by its scoped name; None for an unknown name."""
         found = self._scoped_link(name)
         return None if found is None else found[0].first_link_row + found[1]
 
