@@ -49,14 +49,14 @@ class Forces(StepHelper):
                         BodyEvent.RELEASED, BodyEvent.MOTOR_TARGET_CHANGED))
 
     def __init__(self, wake: Callable[[List[Body]], None],
-                 loops_changed: Callable[[Set[int]], None] = lambda rows: None,
-                 release: Callable[[Body, Axis], None] = lambda body, axis: None,
-                 motor_of: Callable[[int], Motor] = lambda row: None,
-                 read_links: Callable[[Tuple[int, ...]], bytes] = lambda rows: b"",
-                 read_axes: Callable[[Tuple[int, ...]], List[float]] = lambda rows: []) -> None:
+                 loops_changed: Callable[[Set[int]], None],
+                 release: Callable[[Body, Axis], None],
+                 motor_of: Callable[[int], Motor],
+                 read_links: Callable[[Tuple[int, ...]], bytes],
+                 read_axes: Callable[[Tuple[int, ...]], List[float]]) -> None:
         """`loops_changed` is called with the axis rows that PID loops drive, when these change.
 
-        `release` restores the motor or friction of an axis that a servo left. `motor_of` returns
+        `release` restores the motor or friction of an axis after a servo. `motor_of` returns
         the motor of the axis of a row. `read_links` returns the current rows of links,
         `read_axes` the position and rate of axes.
         """

@@ -101,8 +101,7 @@ class StateSetter:
             raise RemovedError("the link no longer exists")
         self._readout.read()
         body, part = self._rows[command.row]
-        held = part.link is not None and part.link.kinematic
-        if body.base is None and not held:
+        if body.base is None and not part.link.kinematic:
             raise CommandRefusedError("the link belongs to a body that is joined to the world")
         pose, twist = self._in_world(command.pose, command.twist, command.frame)
         current = self.link_state(part.row).pose
