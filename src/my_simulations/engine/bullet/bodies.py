@@ -1,7 +1,7 @@
-"""PyBullet bodies from planned ones, and what the engine must remember of each.
+"""Describe PyBullet bodies, and set their dynamics, poses and velocities.
 
-PyBullet speaks of centres of mass; the description speaks of link frames. The two meet here and
-nowhere else: `link_from_com` of each part converts, both ways.
+PyBullet uses frames at centres of mass, along the principal axes; the description uses link frames.
+`Part.link_from_com` converts between them.
 """
 from __future__ import annotations
 
@@ -40,12 +40,17 @@ FASTEST_RATE = 1e6
 
 @dataclass
 class Part:
-    """One link of a body: its row in the ring, PyBullet's index, its mass and its surface.
+    """One link of a body, or a piece of it with a surface of its own.
 
     Attributes:
-        link_from_com: the centre of mass and the principal axes.
-        moments: about those axes, kg m^2.
-        mu, friction: the coefficients of the file, and as stored in PyBullet.
+        row: in the link table of the ring.
+        index: PyBullet's link index.
+        link_from_com: the centre of mass and the principal axes in the link frame.
+        mass: kg.
+        moments: of inertia about the principal axes, kg m^2.
+        mu: the friction coefficient of the file.
+        friction: the coefficient to store in PyBullet (`surface_coefficients`).
+        gravity: whether gravity acts on it.
         link: its description, with the collisions that it carries (see `surface_pieces`).
     """
 
@@ -60,23 +65,27 @@ class Part:
     link: Link = field(default_factory=lambda: Link(""))
 
     def com_pose(self, link_pose: Pose) -> Pose:
-        """World pose of the centre of mass from that of the link frame."""
+        """Return the world pose of the centre of mass for that of the link frame."""
         return compose(link_pose, self.link_from_com)
 
     def com_twist(self, link_pose: Pose, twist: Twist) -> Twist:
-        """Twist at the centre of mass from that at the link origin."""
+        """Return the twist at the centre of mass for that at the link origin."""
         return twist_at(twist, rotate(link_pose.orientation, self.link_from_com.position))
 
 
 @dataclass
 class Axis:
-    """One joint axis of a body: its row in the ring and PyBullet's joint index.
+    """One joint axis of a body.
 
     Attributes:
+        row: in the joint table of the ring.
+        index: PyBullet's joint index.
+        name: of its joint in the model.
         number: which of its joint's axes it is.
         mobility: at joint positions 0, other joints free, 1/kg or 1/(kg m^2).
         lower, upper: its limits, rad or m.
-        follower: for a screw, PyBullet's index of its other half, and the ratio of the motions.
+        follower: for a screw, PyBullet's index of its other axis, and the motion of that per
+            motion of this one.
     """
 
     row: int
@@ -105,15 +114,16 @@ class BallJoint:
 
 @dataclass
 class Body:
-    """One PyBullet body, or several immovable ones that stand for one link.
+    """One PyBullet body, or several static ones that represent one link.
 
     Attributes:
         uid: PyBullet's number; `more` those of further static pieces.
         carriers: for a body of static pieces, the part of each with its collisions.
-        ball_joints: have no row.
+        ball_joints: they have no rows.
         parts: its links; `base` is the part whose index is BASE, None for a fixed base.
         moves: False for static and kinematic ones.
-        rigid: joint-free, so it may sleep when `may_sleep`.
+        rigid: whether it has no joints and uses Bullet's solver for rigid bodies.
+        may_sleep: whether the description allows it to sleep.
         is_sphere: its only collision is a sphere.
         uses_ccd: so thin that Bullet detects its collisions continuously, along its path (CCD).
         lead_row: of its first part.
@@ -155,7 +165,7 @@ class Body:
 
     @property
     def uids(self) -> Tuple[int, ...]:
-        """All PyBullet numbers it holds."""
+        """PyBullet's numbers of all its bodies."""
         return (self.uid,) + self.more
 
     def with_role(self, role: str) -> Set[int]:
@@ -187,19 +197,19 @@ class Body:
 
     @property
     def sleeps(self) -> bool:
-        """Whether it may sleep as things are: nothing ties or pushes it."""
+        """Whether Bullet may let it sleep now: no joint ties it, no timed force acts on it."""
         return (self.rigid and self.moves and self.may_sleep
                 and not self.ties and not self.loads)
 
     @property
     def base(self) -> Optional[Part]:
-        """The part that PyBullet's base is."""
+        """The link that is PyBullet's base; None for a fixed base."""
         return self.parts[0] if self.parts[0].index == BASE else None
 
 
 def set_dynamics(uid: int, index: int, surface: Surface, mass: float, moments: Vec3,
                  may_sleep: bool) -> None:
-    """Gazebo's dynamics for one link: the file's inertia, no hidden damping, its surface."""
+    """Set inertia, friction and restitution of a link as described, without Bullet's damping."""
     # One call each: some settings make PyBullet apply all of a call to the base (measured, 3.2.7:
     # with maxJointVelocity, the mass of a link became that of the base and freed a fixed one).
     def change(**settings: object) -> None:
@@ -275,7 +285,7 @@ def stop_ball_joints(body: Body) -> None:
 
 
 def piece_pose(at: Pose, recipe: Recipe) -> Pose:
-    """Return the pose of the body of a piece, for the pose `at` of the link's body."""
+    """Return the pose of the body of a static piece for the pose `at` of the link's body."""
     return at if recipe.frame is IDENTITY else compose(at, recipe.frame)
 
 

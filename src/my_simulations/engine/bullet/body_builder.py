@@ -1,4 +1,4 @@
-"""Build the bodies of a model, again after each reset of the world."""
+"""Build the bodies of a model in PyBullet; a reset builds them again."""
 from __future__ import annotations
 
 import itertools
@@ -37,7 +37,7 @@ from .mass_matrix import MassMatrix
 from .rims import with_ends, with_rims
 
 _LIGHT = 1e-6  # share of a link's mass for the piece between the two axes of its joint
-_OTHER = 2.0   # factor: closer moments count as those of the shape
+_SIMILAR = 2.0  # factor: closer moments of inertia count as those of the shape
 _JOINT_TYPES = {"revolute": pybullet.JOINT_REVOLUTE, "prismatic": pybullet.JOINT_PRISMATIC,
                 "fixed": pybullet.JOINT_FIXED, "ball": pybullet.JOINT_SPHERICAL}
 
@@ -203,7 +203,7 @@ class Builder:
             uid = create(masses.mass)
             known[shape, masses.mass] = pybullet.getDynamicsInfo(uid, BASE)[2]
         of_shape = known[shape, masses.mass]
-        if all(own <= _OTHER * found and found <= _OTHER * own
+        if all(own <= _SIMILAR * found and found <= _SIMILAR * own
                for own, found in zip(masses.moments, of_shape)) or sum(of_shape) <= 0.0:
             return create(masses.mass) if uid is None else uid
         if uid is not None:

@@ -1,4 +1,4 @@
-"""Move models as commands say, regardless of forces: in the plane, or where they are dragged."""
+"""Set the motion of models regardless of forces: planar velocities, and poses of pinned models."""
 from __future__ import annotations
 
 import math
@@ -36,7 +36,7 @@ class PlanarMotion(StepHelper):
         self._load(before.keys() - self._velocities.keys(), -1)
 
     def _load(self, numbers: Iterable[int], change: int) -> None:
-        """Keep bodies awake while they are moved, or let them sleep again."""
+        """Keep bodies awake while they have planar velocities; allow sleep after it."""
         for number in sorted(numbers):
             for body in self._models[number].bodies:
                 body.loads += change
@@ -67,7 +67,7 @@ class PlanarMotion(StepHelper):
 
 
 class PinnedBodies(StepHelper):
-    """Puts bodies that are dragged by hand back where they were put, at rest, after every step."""
+    """Sets pinned bodies, such as dragged ones, back to their poses, at rest, after each step."""
 
     events = frozenset({BodyEvent.STATE_SET})
 
@@ -77,7 +77,7 @@ class PinnedBodies(StepHelper):
         self._poses: Dict[int, Pose] = {}
 
     def set(self, bodies: Iterable[Body]) -> None:
-        """Hold these bodies and release all others."""
+        """Pin these bodies and release all others."""
         before = self._bodies
         self._bodies = {body.uid: body for body in bodies
                         if body.moves and body.base is not None}
@@ -99,11 +99,11 @@ class PinnedBodies(StepHelper):
         self._poses.pop(body.uid, None)
 
     def due(self, step: int) -> int:
-        """Each step while a body is held, otherwise `FAR`."""
+        """Each step while a body is pinned, otherwise `FAR`."""
         return step if self._poses else FAR
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Restore the poses of held bodies after a step, at rest."""
+        """Restore the poses of pinned bodies, at rest."""
         for uid, pose in self._poses.items():
             pybullet.resetBasePositionAndOrientation(uid, pose.position, pose.orientation)
             pybullet.resetBaseVelocity(uid, *STILL)

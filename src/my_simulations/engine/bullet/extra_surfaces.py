@@ -1,4 +1,4 @@
-"""What the surface of a link has besides one coefficient of friction and bounces, as PyBullet's."""
+"""Set surface properties in PyBullet besides one friction coefficient and restitution."""
 from __future__ import annotations
 
 import math
@@ -21,16 +21,16 @@ _PUSHED_OUT = 5.0      # 1/s: overlaps of damped contacts shrink at this rate, a
 _DEEP = 0.002          # m: an overlap of this depth parts at max_vel
 _LEAST_SHARE = 1e-3    # of the larger coefficient, along the slippery direction
 _TORSION = 3.0 * math.pi / 16.0
-_ROLLING = 1e-9        # m
-_SEEN = 2e-4           # m; a rigid body that its weight presses less deep may be a hard one
-_WEIGHT = 9.8          # N/kg
+_ROLLING = 1e-9        # m: Bullet ignores torsional friction if rolling friction is 0
+_VISIBLE = 2e-4        # m: contacts of a body that sinks in less by its weight count as hard
+_WEIGHT = 9.8          # N/kg: gravity at which `_VISIBLE` is checked
 
 
 def store(body: Body, dt: float) -> None:
-    """Give links what their surfaces have besides friction and bounces. `dt`: step size, s.
+    """Set direction-dependent, compliant and torsional contacts of the links of a body.
 
-    Directions of friction (mu2, fdir1), softness (kp, kd, max_vel) and torsional friction; of the
-    collision whose coefficient holds (SDF 1.7, collision/surface; Gazebo has one each).
+    These are mu2 and fdir1; kp, kd and max_vel; surface/friction/torsional (SDF 1.7). PyBullet has
+    one surface per link, that of the `dominant_collision`. `dt`: step size, s.
     """
     for uid, part in body.surfaces:
         collision = dominant_collision(part.link)
@@ -49,7 +49,7 @@ def store(body: Body, dt: float) -> None:
         if surface.torsion > 0.0 and surface.use_patch_radius and surface.patch_radius > 0.0:
             # Gazebo's limit: 3 pi / 16 times radius, coefficient and normal force.
             settings["spinningFriction"] = _TORSION * surface.patch_radius * surface.torsion
-            settings["rollingFriction"] = _ROLLING  # if it is 0, Bullet does not look at torsion
+            settings["rollingFriction"] = _ROLLING
         if settings:
             pybullet.changeDynamics(uid, part.index, **settings)
 
@@ -60,12 +60,12 @@ def is_soft(link: Link) -> bool:
     It must be an articulated body: contacts of rigid bodies part overlaps without forces
     (`contact_settling`), so they cannot be springs.
     """
-    return any(link.collisions[group[0]].surface.kp * _SEEN < _WEIGHT * link.inertial.mass
+    return any(link.collisions[group[0]].surface.kp * _VISIBLE < _WEIGHT * link.inertial.mass
                for group in by_friction(link))
 
 
 def first_direction(collision: Collision, part: Part) -> Vec3:
-    """The direction in which mu of a directed surface holds, of length 1, in PyBullet's frame."""
+    """Return the direction in which mu acts (fdir1), of length 1, in PyBullet's frame."""
     inward = rotate(conjugate(part.link_from_com.orientation),
                     rotate(collision.pose.orientation, collision.surface.fdir1))
     return scale(inward, 1.0 / norm(inward))

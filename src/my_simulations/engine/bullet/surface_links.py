@@ -1,4 +1,4 @@
-"""What wheel friction needs of the links of a body: coefficients, slips, axles and mobility."""
+"""Collect the data of links for `WheelFriction`: coefficients, slips, axles and mobility."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -20,8 +20,8 @@ from .link_states import AT_REST, Motion, read_com_pose
 from .mass_matrix import MassMatrix
 from .surface_coefficients import is_direction_dependent
 
-_LEAST_MU = 1e-6
-_LEAST_MOMENT = 1e-9  # kg m^2
+_LEAST_MU = 1e-6      # forces are divided by the coefficient
+_LEAST_MOMENT = 1e-9  # kg m^2: the arm is divided by the moment of inertia
 
 
 @dataclass(frozen=True)
