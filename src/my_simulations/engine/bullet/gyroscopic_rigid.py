@@ -23,12 +23,12 @@ from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
 from .step_helper import StepHelper, next_multiple
 
-_EVERY = 16        # steps between two checks of a body that does not turn fast
-_MET_EVERY = 32    # steps until the next check of a fast body that touched something
-_FAST = 1.0        # rad/s
-_ROUND = 0.02      # relative difference below which moments count as equal
-_SPAN = 8.1e-3     # s of free flight after which an attitude is corrected
-_ANGLE = 0.05      # rad of a step of Runge-Kutta
+_EVERY = 16          # steps between two checks of a body that does not turn fast
+_CONTACT_EVERY = 32  # steps until the next check of a fast body that touched something
+_FAST = 1.0          # rad/s
+_ROUND = 0.02        # relative difference below which moments count as equal
+_SPAN = 8.1e-3       # s of free flight after which an attitude is corrected
+_ANGLE = 0.05        # rad, largest rotation in a Runge-Kutta step
 
 
 class _Flight(NamedTuple):
@@ -104,7 +104,7 @@ class GyroscopicRigid(StepHelper):
             follows = step + 1
             span = dt if damped else self._steps * dt
             if self._met_something(body, flight, span, gravity):
-                follows = next_multiple(step + _MET_EVERY, self._steps)
+                follows = next_multiple(step + _CONTACT_EVERY, self._steps)
             elif not (body.ties or body.parts[0].row in self._loaded()):
                 self._correct(uid, flight, span)
             self._agenda.plan(uid, follows)
@@ -157,7 +157,7 @@ def _velocity(turn: Quat, momentum: Vec3, moments: Vec3) -> Vec3:
 
 
 def _integrate_attitude(turn: Quat, momentum: Vec3, moments: Vec3, dt: float) -> Quat:
-    """The attitude `dt` s later: Runge-Kutta 4 of q' = w(q) q / 2."""
+    """Return the attitude `dt` s later: one Runge-Kutta 4 step of q' = w(q) q / 2."""
     x, y, z, w = turn
     at, total = turn, (0.0, 0.0, 0.0, 0.0)
     for weight, span in ((1.0, dt / 2), (2.0, dt / 2), (2.0, dt), (1.0, 0.0)):

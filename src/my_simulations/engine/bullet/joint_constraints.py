@@ -25,7 +25,7 @@ from .body_events import BodyObserver
 _FORCE = 1e7          # N or N m: largest force or torque of a closed loop or a gear
 _HINGE_LENGTH = 0.1   # m between the two points that represent a hinge
 _LEAST_RADIUS = 0.01  # m, of the points that represent a fixed joint
-_ERP = 0.2
+_ERP = 0.2            # share of the position error of gears that is corrected in each step
 
 End = Tuple[Body, Part]
 """A link as the end of a joint."""
@@ -55,7 +55,7 @@ class Constraint:
 
 
 class ConstraintBook:
-    """All constraints of a world."""
+    """Stores all constraints of a world; makes and removes them in a safe order (see above)."""
 
     def __init__(self) -> None:
         self._made: List[Constraint] = []
@@ -219,6 +219,8 @@ class Constraints:
 
 @dataclass(eq=False)
 class _Tie:
+    """A joint between two bodies; `ends` has one entry for a joint to the world."""
+
     name: str
     ends: Tuple[End, ...]
     constraints: List[Constraint]
@@ -229,7 +231,7 @@ class _Tie:
         return {body.uid for body, _ in self.ends}
 
     def count(self, change: int) -> None:
-        """Add to the number of ties of the bodies; tied ones do not sleep."""
+        """Change the number of ties of both bodies by `change`; tied bodies do not sleep."""
         for body, _ in self.ends:
             body.ties += change
             set_sleep(body)
@@ -245,8 +247,8 @@ class InterModelJoints(BodyObserver):
     """Joints between links of different models, or between a rigid body and the world.
 
     Constraints hold them, so limits, friction, damping, springs and motors of their axes do not
-    act. Tied bodies do not sleep, and those that are tied to each other do not collide (Gazebo
-    behaviour). Joints go with either of the models they connect.
+    act. Connected bodies do not sleep, and do not collide with each other (Gazebo behaviour). A
+    joint is removed with either of the models that it connects.
     """
 
     def __init__(self, book: ConstraintBook) -> None:
@@ -255,7 +257,7 @@ class InterModelJoints(BodyObserver):
         self._anchor: Optional[End] = None
 
     def connect(self, command: ConnectModels, rows: Dict[int, End]) -> None:
-        """Tie two links. Raises `CommandRefusedError`."""
+        """Connect two links. Raises CommandRefusedError, RemovedError."""
         joint = command.joint
         if joint.type not in TIE_TYPES:
             raise CommandRefusedError(
@@ -279,7 +281,7 @@ class InterModelJoints(BodyObserver):
         tie.count(1)
 
     def _world(self) -> End:
-        """An immovable body without a shape: PyBullet ties rigid bodies to bodies only."""
+        """Return a static body without a shape: constraints of rigid bodies need a second body."""
         if self._anchor is None:
             uid = pybullet.createMultiBody(0.0)
             part = Part(-1, BASE, IDENTITY, 0.0, (0.0, 0.0, 0.0), 0.0, 0.0, False)
@@ -287,14 +289,14 @@ class InterModelJoints(BodyObserver):
         return self._anchor
 
     def forget(self, body: Body) -> None:
-        """A body goes: untie it from the others."""
+        """Remove the joints of a removed body."""
         for tie in [tie for tie in self._ties if body.uid in tie.uids]:
             self._disconnect(tie)
-            # Bullet keeps pairs that do not collide by numbers, which the next body gets.
+            # Bullet stores pairs that do not collide by body numbers, which new bodies reuse.
             tie.set_collision(True)
 
     def disconnect(self, names: Sequence[str]) -> List[Body]:
-        """Untie joints by name; returns the bodies that are free, which collide again."""
+        """Remove joints by name; returns the bodies that they connected, which collide again."""
         found = [tie for tie in self._ties if tie.name in names]
         for tie in found:
             self._disconnect(tie)

@@ -1,7 +1,7 @@
-"""Reads the states of a few links and joint axes, for records of exact steps.
+"""Read the states of a few links and joint axes, for records of exact steps.
 
-`StateReadout` reads all that may have moved; a record of one robot in a world of many bodies needs
-a few rows. They are the same to the bit.
+`StateReadout` reads all bodies that may have moved. A record of one robot in a world of many bodies
+needs a few rows only. The values of both are identical.
 """
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .state_readout import StateReadout
 
 
 class RowReader:
-    """Rows of the ring's tables as they are now.
+    """Reads the present values of rows of the ring's tables.
 
     Args:
         readout: its tables have the rows of bodies at rest.
@@ -30,7 +30,7 @@ class RowReader:
         self._readout, self._links, self._axes = readout, links, axes
 
     def read_links(self, rows: Tuple[int, ...]) -> bytes:
-        """The rows as raw doubles; zeros where there is no such link."""
+        """Return link rows as raw doubles; zeros for rows without a link."""
         readout = self._readout
         found = b""
         for row in rows:
@@ -39,20 +39,20 @@ class RowReader:
                 now = motion(body.uid, part.index)
                 total = sum(now.position) + sum(now.orientation) + sum(now.linear) + sum(
                     now.angular)
-                if total - total == 0.0:
+                if total - total == 0.0:   # finite
                     found += self._packed(row, now)
                     continue
-                readout.update()   # which puts the body back
+                readout.update()   # puts a body with an infinite state back
             found += readout.row(row)
         return found
 
     def _packed(self, row: int, now: Motion) -> bytes:
-        """The row of a link by its centre of mass, as `StateReadout` computes it."""
+        """Return the row of a link for the motion of its centre of mass, as in `StateReadout`."""
         offset = self._readout.offset(row)
         return ROW.pack(*chain(*now)) if offset is None else ROW.pack(*link_row(*now, offset))
 
     def read_axes(self, rows: Tuple[int, ...]) -> List[float]:
-        """Position and rate of joint axes, one after the other; zeros where there is none."""
+        """Return position and rate of each joint axis in turn; zeros for rows without an axis."""
         known = [self._axes[row] for row in rows if row in self._axes]
         if len(known) == len(rows):
             body = known[0][0]

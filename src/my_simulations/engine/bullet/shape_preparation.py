@@ -1,4 +1,4 @@
-"""Makes the shapes of models that will be loaded, a few at a time between steps."""
+"""Make the shapes of models that will be loaded, a few at a time between steps."""
 from __future__ import annotations
 
 import time
@@ -8,11 +8,11 @@ from ..commands import ContinuePreparation, PrepareModel
 from .collision_shapes import ShapeError, ShapeFactory
 
 _SLICE_S = 0.05
-"""Shapes are made until this time is over; a large one may take longer."""
+"""Wall seconds for which shapes are made between two steps; a large shape may take longer."""
 
 
 class ShapePreparation:
-    """The preparations under way, by their numbers.
+    """Makes shapes of models step by step; each preparation has a number.
 
     A shape that cannot be made ends its preparation; the load of the model reports it.
     """
@@ -22,12 +22,12 @@ class ShapePreparation:
         self._under_way: Dict[int, Iterator[None]] = {}
 
     def begin(self, command: PrepareModel) -> bool:
-        """Begin with a model; returns whether there is more to do."""
+        """Begin the preparation of a model; returns True, as shapes remain to be made."""
         self._under_way[command.number] = self._shapes.prepare(command.model, command.meshes)
         return True
 
     def advance(self, command: ContinuePreparation) -> bool:
-        """Make shapes for a while; returns whether there is more to do."""
+        """Make shapes for `_SLICE_S`; returns whether shapes remain to be made."""
         steps = self._under_way.get(command.number)
         if steps is None:
             return False
