@@ -236,10 +236,10 @@ def damped_step(jacobian: np.ndarray, way: np.ndarray, damping: float) -> np.nda
         way: (m,).
         damping: above 0; bounds x near singular poses.
     """
+    square = jacobian @ jacobian.T
+    square.flat[::len(way) + 1] += damping ** 2
     # Not by np.linalg.solve: for it, OpenBLAS wakes threads that then keep the processors busy.
-    count = jacobian.shape[1]
-    found: np.ndarray = np.linalg.lstsq(np.vstack((jacobian, damping * np.eye(count))),
-                                        np.concatenate((way, np.zeros(count))), rcond=None)[0]
+    found: np.ndarray = jacobian.T @ np.linalg.lstsq(square, way, rcond=None)[0]
     return found
 
 
