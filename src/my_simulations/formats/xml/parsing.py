@@ -9,13 +9,12 @@ from __future__ import annotations
 import functools
 import os
 import re
-from typing import Any, Callable, List, Match, Tuple, Union
+from typing import Any, Union
 
 from ...errors import InputError, error
 from ...resources.lfs_pointer import LFS_HINT, LFS_POINTER, is_lfs_pointer
 from ...resources.limited_file import at_most
 from ...xml_characters import forbidden_character, without_forbidden
-from .repair import Repair
 from .source import IssueCollector
 
 _DECLARATION = re.compile(rb"<\?xml\b[^>]*\?>")
@@ -201,6 +200,7 @@ def _replace_typographic_characters(data: bytes, root: Any, file: str, log: Issu
     """The root of a well-formed document, after replacing typographic brackets if it has any."""
     from lxml import etree
 
+    from .typography import is_suspicious
 
     text = data.decode("utf-8", "replace")
     if not is_suspicious(text):
@@ -214,6 +214,7 @@ def _recover(text: str, fault: Any, file: str, log: IssueCollector) -> Any:
 
     from ...errors import warning
     from .repair import balance_tags
+    from .typography import replace_typography  # rarely needed, and start-up time counts
 
     line, column = fault.position
     if "Excessive depth" in fault.msg:
@@ -260,41 +261,3 @@ def _recover(text: str, fault: Any, file: str, log: IssueCollector) -> Any:
 
 def _only_lines(found: Any) -> bytes:
     return b"\n" * int(found.group().count(b"\n"))
-
-
-_OPENING = re.compile("‹[/!?A-Za-z][^‹›]*›")
-_BRACKET = re.compile("[‹›]")
-_TYPESET_COMMENT = re.compile("<!\\s*([–—]+|-(?!-))(.*?)(-->|[–—]>|->)", re.S)
-_QUOTED = re.compile("(=\\s*)[“”„‟″]([^“”„‟″<>\"]*)[“”„‟″]|(=\\s*)[‘’‚‛′]([^‘’‚‛′<>']*)[‘’‚‛′]")
-
-
-def is_suspicious(text: str) -> bool:
-    """Whether a well-formed text contains typographic angle brackets."""
-    return "‹" in text and _OPENING.search(text) is not None
-
-
-def replace_typography(text: str) -> Tuple[str, List[Repair]]:
-    """Replace typographic brackets, dashes and quotes; return the text and the repairs."""
-    repairs: List[Repair] = []
-    if is_suspicious(text):
-        text = _replace(text, _BRACKET, lambda found: "<" if found.group() == "‹" else ">",
-                        "‹ and › stand here for < and >", repairs)
-    text = _replace(text, _TYPESET_COMMENT, lambda found: "\n" * found.group().count("\n"),
-                    "a comment begins with <!-- and ends with -->, with two hyphens each", repairs)
-    text = _replace(text, _QUOTED, lambda found: f'{found.group(1) or found.group(3)}"'
-                    f'{found.group(2) or found.group(4) or ""}"',
-                    "the quotes of an attribute are typographic ones, not \"", repairs)
-    return text, repairs
-
-
-def _replace(text: str, what: "re.Pattern[str]", becomes: Callable[[Match[str]], str],
-             message: str, repairs: List[Repair]) -> str:
-    first = what.search(text)
-    if first is None:
-        return text
-    changed, count = what.subn(becomes, text)
-    more = f" (and {count - 1} more)" if count > 1 else ""
-    at = first.start()
-    repairs.append(Repair(message + more, text.count("\n", 0, at) + 1,
-                          at - text.rfind("\n", 0, at), unclosed=False))
-    return changed
