@@ -4,7 +4,6 @@ PyBullet forgets external forces and joint torques after one step.
 """
 from __future__ import annotations
 
-import struct
 from typing import Callable, Dict, FrozenSet, List, Optional, Sequence, Set, Tuple
 
 import pybullet
@@ -22,7 +21,6 @@ from ...geometry import (
     rotate,
     scale,
 )
-from ..ring import LINK_WIDTH
 from ..run_state import DamperMemory, LoopMemory
 from ..timed_forces import TimedEffort, TimedForce, TimedWrench
 from ..wrench_laws import AT_REST, WrenchLaw
@@ -31,11 +29,11 @@ from .body_events import BodyEvent
 from .implicit_axes import ImplicitAxes, Motor
 from .joint_pid import MOST_EFFORT, PidController
 from .joint_servos import JointServos
+from .link_rows import ROW
 from .link_states import read_com_pose
 from .step_helper import FAR, StepHelper
 
 _NOBODY: FrozenSet[int] = frozenset()
-_ROW = struct.Struct(f"={LINK_WIDTH}d")
 
 
 class Forces(StepHelper):
@@ -328,7 +326,7 @@ class Forces(StepHelper):
 
     def _wrench_of_law(self, wrench: TimedWrench, law: WrenchLaw, com: Vec3) -> Tuple[Vec3, Vec3]:
         """Return force and torque for the state of the link; zero if they are not finite."""
-        n = _ROW.unpack(self._read_links((wrench.row,)))
+        n = ROW.unpack(self._read_links((wrench.row,)))
         joint = AT_REST
         if wrench.axis_row >= 0:
             position, rate = self._read_axes((wrench.axis_row,))

@@ -7,11 +7,12 @@ the rotation R, the link frame is at x + R p and moves at v + w x R p.
 from __future__ import annotations
 
 import struct
-from typing import Tuple
+from typing import Optional, Tuple
 
 from ...geometry import Pose, Quat, Vec3
+from ..ring import LINK_WIDTH
 
-ROW = struct.Struct("=13d")
+ROW = struct.Struct(f"={LINK_WIDTH}d")
 """Position, quaternion, linear and angular velocity; see `ring.LINK_WIDTH`."""
 
 PlaceRow = Tuple[float, float, float, float, float, float, float]
@@ -37,8 +38,13 @@ def place_row(position: Vec3, orientation: Quat, offset: Pose) -> Tuple[PlaceRow
 
 
 def link_row(position: Vec3, orientation: Quat, linear: Vec3, angular: Vec3,
-             offset: Pose) -> Tuple[float, ...]:
-    """Return the row of a link frame, 13 numbers, whose centre of mass has this state."""
+             offset: Optional[Pose]) -> Tuple[float, ...]:
+    """Return the row of a link frame, 13 numbers, whose centre of mass has this state.
+
+    `offset` None: the link frame is that of the centre of mass.
+    """
+    if offset is None:
+        return (*position, *orientation, *linear, *angular)
     place, (lx, ly, lz) = place_row(position, orientation, offset)
     (vx, vy, vz), (wx, wy, wz) = linear, angular
     return (*place, vx + (wy * lz - wz * ly), vy + (wz * lx - wx * lz),

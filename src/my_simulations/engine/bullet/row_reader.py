@@ -5,14 +5,13 @@ needs a few rows only. The values of both are identical.
 """
 from __future__ import annotations
 
-from itertools import chain
 from typing import Dict, List, Tuple
 
 import pybullet
 
 from .bodies import Axis, Body, Part
 from .link_rows import ROW, link_row
-from .link_states import Motion, motion
+from .link_states import motion
 from .state_readout import StateReadout
 
 
@@ -40,16 +39,11 @@ class RowReader:
                 total = sum(now.position) + sum(now.orientation) + sum(now.linear) + sum(
                     now.angular)
                 if total - total == 0.0:   # finite
-                    found += self._packed(row, now)
+                    found += ROW.pack(*link_row(*now, readout.offset(row)))
                     continue
                 readout.update()   # puts a body with an infinite state back
             found += readout.row(row)
         return found
-
-    def _packed(self, row: int, now: Motion) -> bytes:
-        """Return the row of a link for the motion of its centre of mass, as in `StateReadout`."""
-        offset = self._readout.offset(row)
-        return ROW.pack(*chain(*now)) if offset is None else ROW.pack(*link_row(*now, offset))
 
     def read_axes(self, rows: Tuple[int, ...]) -> List[float]:
         """Return position and rate of each joint axis in turn; zeros for rows without an axis."""

@@ -8,7 +8,6 @@ can touch. It is repeated after the moving body has covered the margin.
 from __future__ import annotations
 
 import struct
-from itertools import chain
 from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
@@ -307,8 +306,7 @@ class StateReadout(BodyObserver):
         if fastest >= FASTEST_RATE:
             self._reached_fastest_rate(body)
         for part, one in zip(body.parts, found):
-            offset = self._offsets.get(part.row)
-            row = chain(*one) if offset is None else link_row(*one, offset)
+            row = link_row(*one, self._offsets.get(part.row))
             ROW.pack_into(links, part.row * _ROW_BYTES, *row)
         for axis, state in zip(body.axes, states):
             _AXIS.pack_into(self._joint_bytes, axis.row * _AXIS.size, state[0], state[1])

@@ -6,7 +6,6 @@ pose of the link. PyBullet stores joint positions instead, so they are set toget
 from __future__ import annotations
 
 import math
-import struct
 from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 import pybullet
@@ -31,17 +30,15 @@ from ...geometry import (
 from ..api import CommandRefusedError, RemovedError
 from ..body_plan import BASE
 from ..commands import Frame, LinkState, SetJoints, SetLinkState, SetModelState
-from ..ring import LINK_WIDTH
 from . import bodies
 from .bodies import Axis, Body, Part, set_axis_state
 from .body_events import BodyEvent
+from .link_rows import ROW
 from .link_states import read_com_pose
 from .row_reader import RowReader
 from .state_readout import StateReadout
 from .state_restore import Entry, set_ball_joint
 from .wake_up import WakeUp
-
-_ROW = struct.Struct(f"={LINK_WIDTH}d")
 
 _NEAR = 2e-5
 """m and rad: a pose is valid if the joint allows one this near; saved poses have six digits."""
@@ -78,7 +75,7 @@ class StateSetter:
     def present_model_pose(self, entry: Entry) -> Pose:
         """Return the present pose of a model frame."""
         return _model_pose(entry, lambda row: _link_state(
-            _ROW.unpack(self._row_reader.read_links((row,)))).pose)
+            ROW.unpack(self._row_reader.read_links((row,)))).pose)
 
     def set_model(self, command: SetModelState, entry: Entry) -> None:
         """Set the pose and twist of a model. Raises CommandRefusedError."""
