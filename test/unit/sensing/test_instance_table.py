@@ -28,7 +28,7 @@ def seen(batches, links, placed=None, spec=None, casters=False):
     table = InstanceTable(batches)
     links = np.array(links).reshape(-1, 4, 4)
     found = table.seen(VIEW, links, len(links) if placed is None else placed, spec, casters)
-    return [(one, rows.tolist(), ahead.tolist()) for one, _, rows, ahead in found]
+    return [(one, rows.tolist(), centers[:, 2].tolist()) for one, _, rows, centers in found]
 
 
 def test_only_instances_in_view_are_seen():
@@ -42,7 +42,7 @@ def test_instances_without_a_place_are_left_out():
     one = batch([0, 1, 2, -1])
     links = [at(0, 0, -1), at(0, 0, -2), at(0, 0, -9)]   # the last is that of row -1, an actor
     assert seen([one], links, placed=2) == [(one, [0, 1, -1], [-1.0, -2.0, -9.0])]
-    assert seen([batch([0])], []) [0][1:] == ([], [])
+    assert seen([batch([0])], [])[0][1:] == ([], [])
 
 
 @pytest.mark.parametrize("casters", [False, True])
@@ -54,10 +54,10 @@ def test_shadows_are_cast_by_batches_that_cast_some(casters):
 
 def test_frames_include_the_place_in_the_link():
     one = batch([0, 0], center=(0.0, 0.0, -1.0), local=np.array([at(1, 0, 0), at(0, 2, 0)]))
-    (_, frames, _, ahead), = InstanceTable([one]).seen(VIEW, np.array([at(0, 0, -3)]), 1, None,
+    (_, frames, _, centers), = InstanceTable([one]).seen(VIEW, np.array([at(0, 0, -3)]), 1, None,
                                                        False)
     assert frames[:, :3, 3].tolist() == [[1, 0, -3], [0, 2, -3]]
-    assert ahead.tolist() == [-4.0, -4.0]
+    assert centers[:, 2].tolist() == [-4.0, -4.0]
 
 
 def test_a_scene_without_batches_has_no_instances():

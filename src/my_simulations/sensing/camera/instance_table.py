@@ -9,6 +9,9 @@ from ..api import CameraSpec
 from .batches import Batch
 from .frustum import is_in_view
 
+SeenInstances = Tuple[Batch, np.ndarray, np.ndarray, np.ndarray]
+"""See `InstanceTable.seen`."""
+
 
 class InstanceTable:
     """The instances of some batches, one batch after the other; valid until a batch changes.
@@ -29,7 +32,7 @@ class InstanceTable:
         self._cast = np.repeat([one.casts_shadow for one in self._batches], counts)
 
     def seen(self, view: np.ndarray, links: np.ndarray, placed: int, spec: Optional[CameraSpec],
-             casters: bool) -> Iterator[Tuple[Batch, np.ndarray, np.ndarray, np.ndarray]]:
+             casters: bool) -> Iterator[SeenInstances]:
         """Yield each batch with the instances that a camera can see.
 
         Args:
@@ -40,7 +43,7 @@ class InstanceTable:
             casters: only instances that cast shadows.
 
         Yields:
-            A batch, (k, 4, 4) view from shape, (k,) link rows, (k,) z of the centres in the view.
+            A batch, (k, 4, 4) view from shape, (k,) link rows, (k, 3) centres in the view.
         """
         has_place = self._rows < placed
         if not len(links):
@@ -53,4 +56,4 @@ class InstanceTable:
         for batch, place in zip(self._batches, self._places):
             chosen = wanted[place]
             yield (batch, frames[place][chosen], self._rows[place][chosen],
-                   centers[place, 2][chosen])
+                   centers[place][chosen])

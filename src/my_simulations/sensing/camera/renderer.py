@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import math
-from itertools import chain
 from typing import Any, Callable, Dict, Hashable, Iterator, List, Optional, Tuple
 
 import numpy as np
@@ -20,7 +19,7 @@ from . import distortion, shaders
 from .batches import Batch
 from .context import Targets, draws_with_a_card, load_gl_finish, new_context
 from .frustum import check, projection
-from .instance_table import InstanceTable
+from .instance_table import InstanceTable, SeenInstances
 from .kept_pictures import Drawn, PictureCache
 from .lamps import (
     SHADOW_SIZE,
@@ -81,8 +80,9 @@ class Renderer:
         self._lenses: Dict[CameraSpec, Tuple[np.ndarray, np.ndarray]] = {}
 
     def _forget(self) -> None:
-        """What is seen changes: kept pictures and the table of instances are not valid any more."""
+        """What is seen changes: kept pictures, shadow maps and the table are not valid any more."""
         self._kept.forget()
+        self._map_keys = [None] * len(self._maps)
         self._instances = None
 
     def add(self, body: Body) -> None:
@@ -203,19 +203,19 @@ class Renderer:
 
         Transparent ones are sorted, the farthest first; `casters`: only those that cast shadows.
         """
-        if self._instances is None:
-            self._instances = InstanceTable(self._all())
-        for batch, frames, rows, ahead in self._instances.seen(
-                view, links, len(links) - self._scenery.count, spec, casters):
+        for batch, frames, rows, centers in self._instances_in_view(view, links, spec, casters):
             if batch.surface.clear and len(frames):
+                ahead = centers[:, 2]
                 batch.ahead = float(ahead.mean())
                 far_first = np.argsort(ahead, kind="stable")
                 frames, rows = frames[far_first], rows[far_first]
             batch.upload(frames, rows)
 
-    def _here(self, batch: Batch, links: np.ndarray) -> np.ndarray:
-        """Which instances of a batch have a place."""
-        return np.flatnonzero(batch.rows < len(links) - self._scenery.count)
+    def _instances_in_view(self, view: np.ndarray, links: np.ndarray, spec: Optional[CameraSpec],
+                           casters: bool) -> Iterator[SeenInstances]:
+        if self._instances is None:
+            self._instances = InstanceTable(self._all())
+        return self._instances.seen(view, links, len(links) - self._scenery.count, spec, casters)
 
     # Colours.
 
@@ -292,17 +292,15 @@ class Renderer:
 
     def _casters(self, links: np.ndarray) -> Tuple[np.ndarray, np.ndarray, bytes]:
         low, high, places = np.full(3, np.inf), np.full(3, -np.inf), []
-        for key, batch in chain(self._batches.items(), enumerate(self._scenic)):
+        for n, (batch, frames, _, centers) in enumerate(
+                self._instances_in_view(np.eye(4), links, None, casters=True)):
             if not batch.casts_shadow:
                 continue
-            here = self._here(batch, links)
-            frames = links[batch.rows[here]] @ batch.local[here]
-            places.append(repr((key, batch.radius, batch.shape)).encode() + frames.tobytes())
+            places.append(repr((n, batch.radius, batch.shape)).encode() + frames.tobytes())
             if batch.radius > 1000.0 or not len(frames):  # a ground casts on nothing
                 continue
-            center = frames[:, :3, :3] @ batch.center + frames[:, :3, 3]
-            low = np.minimum(low, center.min(axis=0) - batch.radius)
-            high = np.maximum(high, center.max(axis=0) + batch.radius)
+            low = np.minimum(low, centers.min(axis=0) - batch.radius)
+            high = np.maximum(high, centers.max(axis=0) + batch.radius)
         if not np.isfinite(low).all():
             low, high = np.zeros(3), np.ones(3)
         return np.floor(low), np.ceil(high), b"".join(places)
