@@ -50,7 +50,7 @@ def _part(instance: "Instance", unit: float) -> Optional[MeshPart]:
     positions = np.concatenate([surface.positions for surface in surfaces])
     matrix = instance.matrix
     return MeshPart(instance.names, (positions @ matrix[:3, :3].T + matrix[:3, 3]) * unit,
-                    triangles[:, ::-1] if instance.is_mirrored else triangles)
+                    triangles[:, ::-1] if is_mirrored(matrix) else triangles)
 
 
 def parse_collada(data: bytes) -> Any:
@@ -160,10 +160,10 @@ class Instance:
     matrix: Array
     materials: Dict[Optional[str], str]
 
-    @property
-    def is_mirrored(self) -> bool:
-        """Whether the matrix turns the triangles inside out."""
-        return bool(np.linalg.det(self.matrix[:3, :3]) < 0)
+
+def is_mirrored(matrix: Array) -> bool:
+    """Whether a (4, 4) matrix turns triangles inside out."""
+    return bool(np.linalg.det(matrix[:3, :3]) < 0)
 
 
 class ColladaDocument:

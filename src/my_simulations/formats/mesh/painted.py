@@ -10,7 +10,7 @@ from typing import Any, Iterator, List, Optional, Tuple
 import numpy as np
 
 from ...description.shapes import Mesh, MeshData
-from .collada import ColladaDocument, Surface, parse_collada, unit_of
+from .collada import ColladaDocument, Surface, is_mirrored, parse_collada, unit_of
 from .collada_materials import ColladaMaterials
 from .loading import load_mesh
 from .paint import Array, Paint, linear_to_srgb, paint_of
@@ -164,7 +164,7 @@ def corners_of(surface: Surface, matrix: Array) -> "Tuple[Array, Optional[Array]
         Places (3 m, 3) in the file's unit, normals (3 m, 3) and texture coordinates (3 m, 2); None
         for what the file does not have.
     """
-    order = slice(None, None, -1 if np.linalg.det(matrix[:3, :3]) < 0 else 1)
+    order = slice(None, None, -1 if is_mirrored(matrix) else 1)
     corners = surface.positions[surface.triangles[:, order]].reshape(-1, 3)
     normals = surface.corner_values("NORMAL", 3)
     if normals is not None:
