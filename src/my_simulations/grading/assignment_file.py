@@ -124,7 +124,6 @@ class _AssignmentReader(AssignmentValues):
                        "give each a name of its own", "grade-key")
         return tuple(check for check in found if check is not None)
 
-
     def _check_names(self, checks: Sequence[Check], world: str, models: Set[str]) -> None:
         """Warn of models that the checks name and the assignment's world does not have."""
         try:

@@ -13,11 +13,11 @@ Registered = Sequence[Tuple[str, Sequence[str]]]
 
 
 def misnamed_topics(publishers: Registered, subscribers: Registered) -> List[str]:
-    """What to tell the author of a program about its topics that only the program uses.
+    """Return a sentence for each topic that only the program uses, if the world has a similar one.
 
-    Most such topics are of no interest, so only those are named that resemble a topic of the world.
+    The others are of no interest.
     """
-    told = []
+    found = []
     for own, other, fault in (
             (publishers, subscribers, "publishes {}, which nothing subscribes to"),
             (subscribers, publishers, "subscribes to {}, which nothing publishes")):
@@ -28,8 +28,8 @@ def misnamed_topics(publishers: Registered, subscribers: Registered) -> List[str
                 continue
             meant = _similar(topic, offered)
             if meant:
-                told.append(f"the program {fault.format(topic)}; did you mean {meant}?")
-    return told
+                found.append(f"the program {fault.format(topic)}; did you mean {meant}?")
+    return found
 
 
 def _similar(topic: str, offered: Set[str]) -> str:
