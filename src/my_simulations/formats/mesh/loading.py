@@ -311,7 +311,9 @@ def odd_size(mesh: Mesh, data: MeshData, moves: bool) -> List[Issue]:
 
     Also for a static model if the file claims to be written by SketchUp, which uses inches, in
     metres. For a Collada file without `<unit>`, which means metres, the limit is 3 m, or 10 m in a
-    static model: half a metre written in inches is 20.
+    static model: half a metre written in inches is 20. The mesh is not changed, because the size
+    may be intended: public models of that size are either buildings, which are static, or files
+    with a wrong unit, which their models correct by `<scale>`.
 
     Args:
         mesh: the mesh, with the path of its file.

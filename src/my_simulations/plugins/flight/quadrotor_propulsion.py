@@ -226,7 +226,15 @@ MOST_VELOCITY = 100.0   # m/s and rad/s: faster motion counts as this (hector_qu
 
 
 class QuadrotorAerodynamics(Plugin):
-    """Acts on the first link of the model."""
+    """libhector_gazebo_quadrotor_aerodynamics.so: drag of the first link in the wind.
+
+    Parameters, topics and law are those of hector_quadrotor_gazebo_plugins and
+    hector_quadrotor_model: with the velocity v of the body relative to the wind and its angular
+    velocity w, both in its axes, the drag is (C_wxy v_x, C_wxy v_y, C_wz v_z) |v| and the moment
+    (C_mxy w_x, C_mxy w_y, C_mz w_z) |w|, against the motion. Where it differs: the axes are those
+    of the body at any roll angle (the original turns them the wrong way about x); the wind of the
+    world counts until one comes on `<windTopicName>`.
+    """
 
     def load(self) -> None:
         context, p = self.context, self.context.parameters

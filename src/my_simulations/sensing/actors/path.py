@@ -1,7 +1,7 @@
 """Where an actor is at a time: the rules of the editor's page (web/js/actor_path.ts).
 
 Trajectories run one after the other, each from its first waypoint on, in world axes; a spline of
-the trajectory's `tension` joins their positions, another one their orientations (`turn_spline`).
+the trajectory's `tension` joins their positions, another one their orientations (`squad`).
 One without waypoints lasts as long as the animation that it names. All this is as in Gazebo; but
 an actor is at its `<pose>` in trajectories without waypoints, in Gazebo at the world's origin, and
 the distance along a path begins at 0 with each cycle, in Gazebo not in a loop of one trajectory.
@@ -223,7 +223,13 @@ def with_neighbours(points: Sequence[Point]) -> List[Point]:
 
 
 def controls_of(turns: Sequence[Quat]) -> List[Quat]:
-    """The inner control point at each orientation."""
+    """Return the inner control point of Shoemake's spline (1985) at each orientation.
+
+    The rules are those of the editor's page (web/js/turn_spline.ts). The spline does not depend on
+    how long segments take (ignition::math::RotationSpline): turns swing by some degrees about
+    straight parts of a path, and widely where the yaw passes from pi to -pi, whose quaternions are
+    far from each other.
+    """
     if len(turns) < 2:
         return list(turns)
     around = with_neighbours(turns)
