@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from my_simulations.sensing.api import CameraSpec
+from my_simulations.sensing.camera.batches import INSTANCE
 from my_simulations.sensing.camera.instance_table import InstanceTable
 
 VIEW = np.eye(4)   # the camera is at the origin and looks along -z
@@ -21,14 +22,17 @@ def at(x, y, z):
 def batch(rows, center=(0.0, 0.0, 0.0), radius=0.5, casts_shadow=True, local=None):
     return SimpleNamespace(rows=np.array(rows), center=np.array(center), radius=radius,
                            casts_shadow=casts_shadow,
-                           local=np.array([np.eye(4)] * len(rows)) if local is None else local)
+                           local=np.array([np.eye(4)] * len(rows)) if local is None else local,
+                           instance=np.array(([[0.0] * 4] * 3, 0, [radius] * 4, [0.0] * 3,
+                                              [0.0] * 3), INSTANCE))
 
 
 def seen(batches, links, placed=None, spec=None, casters=False):
     table = InstanceTable(batches)
     links = np.array(links).reshape(-1, 4, 4)
     found = table.seen(VIEW, links, len(links) if placed is None else placed, spec, casters)
-    return [(one, rows.tolist(), centers[:, 2].tolist()) for one, _, rows, centers in found]
+    return [(one, instances["link"].tolist(), centers[:, 2].tolist())
+            for one, instances, centers in found]
 
 
 def test_only_instances_in_view_are_seen():
@@ -52,11 +56,18 @@ def test_shadows_are_cast_by_batches_that_cast_some(casters):
     assert [rows for _, rows, _ in found] == [[] if casters else [0], [0]]
 
 
+def test_instances_have_the_colors_of_their_batch():
+    first, second = batch([0, 1], radius=0.25), batch([0], radius=0.5)
+    found = InstanceTable([first, second]).seen(VIEW, np.array([at(0, 0, -1)] * 2), 2, None, False)
+    assert [instances["diffuse"].tolist() for _, instances, _ in found] == [
+        [[0.25] * 4] * 2, [[0.5] * 4]]
+
+
 def test_frames_include_the_place_in_the_link():
     one = batch([0, 0], center=(0.0, 0.0, -1.0), local=np.array([at(1, 0, 0), at(0, 2, 0)]))
-    (_, frames, _, centers), = InstanceTable([one]).seen(VIEW, np.array([at(0, 0, -3)]), 1, None,
-                                                       False)
-    assert frames[:, :3, 3].tolist() == [[1, 0, -3], [0, 2, -3]]
+    (_, instances, centers), = InstanceTable([one]).seen(VIEW, np.array([at(0, 0, -3)]), 1, None,
+                                                         False)
+    assert instances["rows"][:, :, 3].tolist() == [[1, 0, -3], [0, 2, -3]]
     assert centers[:, 2].tolist() == [-4.0, -4.0]
 
 

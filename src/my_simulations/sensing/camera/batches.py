@@ -5,12 +5,16 @@ from typing import Any, Dict, Hashable, List, Tuple, Union
 
 import numpy as np
 
-from ..api import NO_ROW
 from ..surfaces import Piece, Surface
 from .shaders import MOST_LAYERS
 from .sky import srgb_to_linear
 
-_INSTANCE: Any = np.dtype([("rows", "<f4", (3, 4)), ("link", "<i4")])
+INSTANCE: Any = np.dtype([("rows", "<f4", (3, 4)), ("link", "<i4"), ("diffuse", "<f4", 4),
+                          ("specular", "<f4", 3), ("emissive", "<f4", 3)])
+"""What a program reads for each instance: view from shape, link row and colours of the surface.
+
+Colours are here and no uniforms: Mesa takes five times as long to draw after a uniform has changed.
+"""
 
 
 class Batch:
@@ -18,6 +22,7 @@ class Batch:
 
     Attributes:
         owners: name of the model of each instance.
+        instance: of INSTANCE, with the colours of its surface; shape ().
         uniforms: of its surface.
         rows: link row of each; local: (n, 4, 4) link from shape.
         shape: another number for another shape.
@@ -27,6 +32,7 @@ class Batch:
     def __init__(self, context: Any, programs: Dict[Hashable, Any], piece: Piece,
                  shadows: bool) -> None:
         self.surface: Surface = piece.surface
+        self.instance = _instance(piece.surface)
         self.uniforms = _uniforms(piece.surface)
         self.casts_shadow = shadows and not piece.surface.clear
         self.center, self.radius = _bounds(piece.rows)
@@ -60,26 +66,21 @@ class Batch:
         self.shape += 1
         self._vertices.write(rows.tobytes())
 
-    def upload(self, frames: np.ndarray, rows: np.ndarray) -> None:
-        """Say where it is to be drawn: (n, 4, 4) view from shape, and the link rows."""
-        self.count = len(frames)
+    def upload(self, instances: np.ndarray) -> None:
+        """Set where it is to be drawn: (n,) of INSTANCE."""
+        self.count = len(instances)
         if not self.count:
             return
-        table = np.empty(self.count, dtype=_INSTANCE)
-        table["rows"] = frames[:, :3]
-        table["link"] = np.maximum(rows, NO_ROW)  # scenery is no link
-        if self._instances is None or self._instances.size < table.nbytes:
+        if self._instances is None or self._instances.size < instances.nbytes:
             self._release_arrays()
-            self._instances = self._context.buffer(reserve=table.nbytes * 2, dynamic=True)
-        self._instances.write(table.tobytes())
+            self._instances = self._context.buffer(reserve=instances.nbytes * 2, dynamic=True)
+        self._instances.write(instances.tobytes())
 
     def draw(self, program: Hashable, culled: bool = True) -> None:
         """Draw what was uploaded; with `culled` only faces that are seen from their front.
 
         The back faces of a double-sided surface are drawn, too.
         """
-        if not self.count:
-            return
         if culled and not self.surface.double_sided:
             self._context.enable(self._context.CULL_FACE)
         else:
@@ -88,8 +89,9 @@ class Batch:
             made = self._programs[program]
             self._arrays[program] = self._context.vertex_array(
                 made, [(self._vertices, *_inputs(made, ("at", "normal", "uv"), (3, 3, 2), "f")),
-                       (self._instances, *_inputs(made, ("row0", "row1", "row2", "link"),
-                                                  (4, 4, 4, 1), "/i"))], self._index)
+                       (self._instances, *_inputs(
+                           made, ("row0", "row1", "row2", "link", "diffuse", "specular",
+                                  "emissive"), (4, 4, 4, 1, 4, 3, 3), "/i"))], self._index)
         self._arrays[program].render(instances=self.count)
 
     def _release_arrays(self) -> None:
@@ -114,12 +116,17 @@ def _bounds(rows: np.ndarray) -> Tuple[np.ndarray, float]:
 
 
 def _uniforms(surface: Surface) -> Dict[str, Union[float, bytes, Tuple[float, ...]]]:
-    """What a surface says to its program; bytes of float32 for arrays."""
-    return {"diffuse": (*(srgb_to_linear(surface.diffuse) * surface.brightness), surface.opacity),
-            "specular": tuple(srgb_to_linear(surface.specular)),
-            "emissive": tuple(srgb_to_linear(surface.emissive)), "repeats": surface.repeats,
-            "alpha_test": surface.alpha_test,
+    """What programs of surfaces with pictures read; bytes of float32 for arrays."""
+    return {"repeats": surface.repeats, "alpha_test": surface.alpha_test,
             **({"layer_form": _layer_forms(surface)} if surface.layers else {})}
+
+
+def _instance(surface: Surface) -> np.ndarray:
+    found = np.zeros((), dtype=INSTANCE)
+    found["diffuse"] = (*(srgb_to_linear(surface.diffuse) * surface.brightness), surface.opacity)
+    found["specular"] = srgb_to_linear(surface.specular)
+    found["emissive"] = srgb_to_linear(surface.emissive)
+    return found
 
 
 def _layer_forms(surface: Surface) -> bytes:

@@ -9,6 +9,7 @@ import numpy as np
 from ...description.light import Light
 from ...description.surroundings import Scene
 from ..poses import inverse
+from ..surfaces import Surface
 from . import shaders
 from .batches import Batch
 from .lamps import ShadowView, light_kinds, light_uniforms
@@ -72,19 +73,37 @@ class LitSurfaces:
         return Lighting(kind, light_kinds(lights, [n for n, _ in shadows]), {
             name: np.ascontiguousarray(value, dtype=np.float32) for name, value in values.items()})
 
-    def draw(self, batch: Batch, lighting: Lighting) -> None:
-        if not batch.count:
-            return
-        surface = batch.surface
-        texture = self._textures.of(surface)
-        layers = [(self._textures.of_layer(layer), n < shaders.MOST_BUMPS
-                   and self._textures.bumps_of(layer))
-                  for n, layer in enumerate(surface.layers[:shaders.MOST_LAYERS])]
-        kind = shaders.LitKind(
-            texture is not None, surface.lit, surface.lit and max(surface.specular[:3]) > 0.0,
+    def kind_of(self, surface: Surface, lighting: Lighting) -> shaders.LitKind:
+        """The kind of program that draws a surface."""
+        return shaders.LitKind(
+            self._textures.of(surface) is not None, surface.lit,
+            surface.lit and max(surface.specular[:3]) > 0.0,
             self._textures.cutting(surface) is not None, surface.blended,
             lighting.fog, lighting.kinds if surface.lit else (),
-            tuple(bool(bumps) for _, bumps in layers))
+            tuple(bool(bumps) for _, bumps in self._layers(surface)))
+
+    def _layers(self, surface: Surface) -> List[Tuple[Any, Any]]:
+        """Picture and normal map of each layer of a terrain."""
+        return [(self._textures.of_layer(layer), n < shaders.MOST_BUMPS
+                 and self._textures.bumps_of(layer))
+                for n, layer in enumerate(surface.layers[:shaders.MOST_LAYERS])]
+
+    def draw_opaque(self, batches: Sequence[Batch], lighting: Lighting) -> None:
+        """Draw batches that hide what is behind them.
+
+        Program by program, because a change takes Mesa three times as long as a small batch. Small
+        ones first: walls and grounds are mostly behind them, and need not be lit there.
+        """
+        kinds: Dict[shaders.LitKind, List[Batch]] = {}
+        for batch in sorted(batches, key=lambda one: one.radius):
+            kinds.setdefault(self.kind_of(batch.surface, lighting), []).append(batch)
+        for kind, alike in sorted(kinds.items(), key=lambda item: item[1][-1].radius):
+            for batch in alike:
+                self.draw(batch, kind, lighting)
+
+    def draw(self, batch: Batch, kind: shaders.LitKind, lighting: Lighting) -> None:
+        """Draw a batch, whose surface is of a kind."""
+        texture = self._textures.of(batch.surface)
         program = self._program(kind, lighting)
         for uniform, values in batch.uniforms.items():
             member = program.get(uniform, None)   # `in` looks at all members, one after the other
@@ -94,7 +113,7 @@ class LitSurfaces:
                 member.value = values
         if texture is not None:
             texture.use(location=0)
-        for n, (map_of_layer, bumps) in enumerate(layers):
+        for n, (map_of_layer, bumps) in enumerate(self._layers(batch.surface)):
             map_of_layer.use(location=shaders.FIRST_LAYER + n)
             if bumps:
                 bumps.use(location=shaders.FIRST_BUMPS + n)

@@ -203,13 +203,12 @@ class Renderer:
 
         Transparent ones are sorted, the farthest first; `casters`: only those that cast shadows.
         """
-        for batch, frames, rows, centers in self._instances_in_view(view, links, spec, casters):
-            if batch.surface.clear and len(frames):
+        for batch, instances, centers in self._instances_in_view(view, links, spec, casters):
+            if batch.surface.clear and len(instances):
                 ahead = centers[:, 2]
                 batch.ahead = float(ahead.mean())
-                far_first = np.argsort(ahead, kind="stable")
-                frames, rows = frames[far_first], rows[far_first]
-            batch.upload(frames, rows)
+                instances = instances[np.argsort(ahead, kind="stable")]
+            batch.upload(instances)
 
     def _instances_in_view(self, view: np.ndarray, links: np.ndarray, spec: Optional[CameraSpec],
                            casters: bool) -> Iterator[SeenInstances]:
@@ -227,15 +226,11 @@ class Renderer:
         background = self._scene.background[:3]
         target.clear(*background, 1.0, depth=1.0)
         context.enable_only(context.DEPTH_TEST)
-        clear: List[Batch] = []
-        # Small ones first: walls and grounds are mostly behind them, and need not be lit there.
-        for batch in sorted(self._all(), key=lambda one: one.radius):
-            if batch.surface.clear:
-                clear.append(batch)
-            else:
-                self._lit.draw(batch, lighting)
+        seen = [batch for batch in self._all() if batch.count]
+        self._lit.draw_opaque([batch for batch in seen if not batch.surface.clear], lighting)
         if self._scene.sky is not None:
             self._draw_sky(spec, view)
+        clear = [batch for batch in seen if batch.surface.clear]
         if clear:
             clear.sort(key=lambda one: one.ahead)  # farther surfaces show through nearer ones
             self._draw_clear(clear, target, lighting)
@@ -253,7 +248,7 @@ class Renderer:
         context.blend_func = context.SRC_ALPHA, context.ONE_MINUS_SRC_ALPHA
         target.depth_mask = False
         for batch in batches:
-            self._lit.draw(batch, lighting)
+            self._lit.draw(batch, self._lit.kind_of(batch.surface, lighting), lighting)
         target.depth_mask = True
 
     def _draw_sky(self, spec: CameraSpec, view: np.ndarray) -> None:
@@ -292,12 +287,12 @@ class Renderer:
 
     def _casters(self, links: np.ndarray) -> Tuple[np.ndarray, np.ndarray, bytes]:
         low, high, places = np.full(3, np.inf), np.full(3, -np.inf), []
-        for n, (batch, frames, _, centers) in enumerate(
+        for n, (batch, instances, centers) in enumerate(
                 self._instances_in_view(np.eye(4), links, None, casters=True)):
             if not batch.casts_shadow:
                 continue
-            places.append(repr((n, batch.radius, batch.shape)).encode() + frames.tobytes())
-            if batch.radius > 1000.0 or not len(frames):  # a ground casts on nothing
+            places.append(repr((n, batch.radius, batch.shape)).encode() + instances.tobytes())
+            if batch.radius > 1000.0 or not len(instances):  # a ground casts on nothing
                 continue
             low = np.minimum(low, centers.min(axis=0) - batch.radius)
             high = np.maximum(high, centers.max(axis=0) + batch.radius)
@@ -312,7 +307,7 @@ class Renderer:
         target.clear(depth=1.0)
         context.enable_only(context.DEPTH_TEST)
         for batch in self._all():
-            if batch.casts_shadow:
+            if batch.count and batch.casts_shadow:
                 self._draw_plain(batch, "shadow", one.clip)
 
     # Depth and labels.
@@ -325,7 +320,8 @@ class Renderer:
         depth, labels = target.color_attachments
         context.enable_only(context.DEPTH_TEST)
         for batch in self._all():
-            self._draw_plain(batch, "range", clip)
+            if batch.count:
+                self._draw_plain(batch, "range", clip)
         self._finish()
         away = np.frombuffer(depth.read(alignment=4), np.float32).reshape(spec.height, spec.width)
         link = np.frombuffer(labels.read(alignment=4), np.int32).reshape(spec.height, spec.width)
@@ -335,8 +331,6 @@ class Renderer:
 
     def _draw_plain(self, batch: Batch, name: str, clip: np.ndarray) -> None:
         """Draw without light: `name` is shadow or range; holes of pictures are left out."""
-        if not batch.count:
-            return
         texture = self._textures.cutting(batch.surface)
         if texture is not None:
             name, plain = f"{name} cut", name

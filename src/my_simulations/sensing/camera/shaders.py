@@ -24,6 +24,7 @@ FIRST_BUMPS = FIRST_LAYER + MOST_LAYERS
 _INSTANCE = """#version 330
 in vec3 at; in vec3 normal; in vec2 uv;
 in vec4 row0; in vec4 row1; in vec4 row2; in int link;
+in vec4 diffuse; in vec3 specular; in vec3 emissive;
 uniform mat4 clip;
 vec3 placed() { vec4 p = vec4(at, 1.0); return vec3(dot(row0, p), dot(row1, p), dot(row2, p)); }
 """
@@ -32,8 +33,12 @@ LIT_VERTEX = _INSTANCE + """
 uniform vec2 repeats;
 out vec3 place; out vec3 out_normal; out vec2 out_uv; out float out_height;
 out vec3 out_east;
+flat out vec4 out_diffuse; flat out vec3 out_specular; flat out vec3 out_emissive;
 void main() {
   place = placed();
+  out_diffuse = diffuse;
+  out_specular = specular;
+  out_emissive = emissive;
   out_east = vec3(row0.x, row1.x, row2.x);
   out_normal = vec3(dot(row0.xyz, normal), dot(row1.xyz, normal), dot(row2.xyz, normal));
   out_uv = uv * repeats;
@@ -81,9 +86,9 @@ _UNIFORMS = f"""#version 330
 #define SHADOWS {MOST_SHADOWS}
 #define LAYERS {MOST_LAYERS}
 """ + """in vec3 place; in vec3 out_normal; in vec2 out_uv; in float out_height; in vec3 out_east;
+flat in vec4 out_diffuse; flat in vec3 out_specular; flat in vec3 out_emissive;
 out vec4 seen;
-uniform vec4 diffuse;
-uniform vec3 specular, emissive, ambient, up;
+uniform vec3 ambient, up;
 uniform sampler2D picture;
 uniform float alpha_test;
 uniform vec3 layer_form[LAYERS];     // repetitions a metre, height it begins at, part a metre
@@ -106,8 +111,8 @@ float lightened(sampler2DShadow map, mat4 from_view, float pixel, vec3 n) {
   return outside ? 1.0 : bright;
 }
 void main() {
-  vec3 albedo = diffuse.rgb;
-  float opacity = diffuse.a;
+  vec3 albedo = out_diffuse.rgb;
+  float opacity = out_diffuse.a;
 """
 
 _SURROUNDED = """  vec3 n = normalize(out_normal), eye = -normalize(place);
@@ -143,7 +148,7 @@ def lit_fragment(kind: LitKind) -> str:
         parts.append(_FALLEN)
         parts += [_light(n, *one, kind.shiny) for n, one in enumerate(kind.lights)]
         # A picture colours what glows, too, as on the page (materials.ts).
-        glow = "emissive * t.rgb" if kind.textured else "emissive"
+        glow = "out_emissive * t.rgb" if kind.textured else "out_emissive"
         parts.append(f"  color = albedo * fallen + shine + {glow};\n")
     if kind.fog:
         parts.append("  float d = -place.z;\n"
@@ -194,7 +199,7 @@ def _light(k: int, kind: str, shadow: int, shiny: bool) -> str:
                      f"shadow_pixel[{shadow}], n);")
     lines += [f"vec3 falling = light_color[{k}] * (strength * facing);", "fallen += falling;"]
     if shiny:
-        lines.append(f"shine += falling * specular * {(SHININESS / 2 + 1) / 4}"
+        lines.append(f"shine += falling * out_specular * {(SHININESS / 2 + 1) / 4}"
                      f" * pow(max(dot(n, normalize(way + eye)), 0.0), {SHININESS});")
     return "  { " + "\n    ".join(lines) + " }\n"
 
