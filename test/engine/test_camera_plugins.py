@@ -50,7 +50,8 @@ class Case(PluginCase):
 
     @property
     def sensing(self):
-        return self.host._scene._process
+        processes = self.host._scene._processes   # for rays and for pictures
+        return processes and processes[1]
 
 
 @pytest.fixture

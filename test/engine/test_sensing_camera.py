@@ -52,7 +52,7 @@ def view(renderer):
             names.append(one.name)
             renderer.remove(one.name)
             renderer.add(one)
-        return renderer.render(spec, matrix(eye), table(poses), outputs, 7)
+        return renderer.render(spec, matrix(eye), table(poses), outputs)
 
     see.renderer = renderer
     yield see
@@ -109,7 +109,7 @@ def test_depth_is_the_distance_along_the_axis_within_a_fifth_of_a_millimetre(vie
 
 def test_depth_of_a_ball(view):
     found = view([body("s", Sphere(1.0), 0)], [Pose((4.0, 0.0, 0.0))], outputs=(DEPTH,))
-    assert found.rgb is None and found.labels is None and found.step == 7
+    assert found.rgb is None and found.labels is None
     assert found.depth[239:241, 319:321] == pytest.approx(3.0, abs=2e-3)
     assert found.depth[0, 0] == math.inf
 
@@ -494,12 +494,12 @@ def test_a_terrain_of_a_file_is_drawn_under_its_textures(view, tmp_path):
 def test_what_did_not_change_is_not_drawn_again(view):
     place = [Pose((3.0, 0, 0))]
     first = view([body("b", Box((1, 1, 1)), 0)], place).rgb
-    again = view.renderer.render(SPEC, matrix(Pose()), table(place), ALL, 9)
-    assert again.rgb is first and again.step == 9
-    moved = view.renderer.render(SPEC, matrix(Pose()), table([Pose((3.0, 0.2, 0))]), ALL, 10)
+    again = view.renderer.render(SPEC, matrix(Pose()), table(place), ALL)
+    assert again.rgb is first
+    moved = view.renderer.render(SPEC, matrix(Pose()), table([Pose((3.0, 0.2, 0))]), ALL)
     assert not np.array_equal(moved.rgb, first)
     view.renderer.set_lights([], DARK)
-    assert view.renderer.render(SPEC, matrix(Pose()), table(place), ALL, 11).rgb.max() == 0
+    assert view.renderer.render(SPEC, matrix(Pose()), table(place), ALL).rgb.max() == 0
 
 
 def test_what_is_half_transparent_is_mixed_and_invisible_is_not_there(view):
@@ -572,7 +572,7 @@ def test_the_same_picture_has_the_same_sum_in_another_context(view):
         for one in bodies:
             other.add(one)
         other.set_lights(view.renderer._lights, view.renderer._scene)
-        return sum_of(other.render(SPEC, matrix(eye), table(places), ALL, 0))
+        return sum_of(other.render(SPEC, matrix(eye), table(places), ALL))
 
     with ThreadPoolExecutor(1) as thread:
         assert thread.submit(elsewhere).result() == here

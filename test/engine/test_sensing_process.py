@@ -12,16 +12,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import ball, ground
 from sensing_scene import DEADLINE_S, body, rows
 from waiting import until
 
 from my_simulations.description.light import Light
 from my_simulations.description.model import Model
 from my_simulations.description.shapes import Box, Mesh, Plane, Sphere
-from my_simulations.description.world import Physics, World
+from my_simulations.description.world import World
 from my_simulations.engine.process_engine import ProcessEngine
-from my_simulations.geometry import STILL, Pose
+from my_simulations.geometry import Pose
 from my_simulations.sensing.api import (
     COLLISIONS,
     DEPTH,
@@ -42,9 +41,9 @@ from my_simulations.sensing.api import (
     SensingEndedError,
     SensingError,
     SensingUnavailableError,
-    SnapshotOverwrittenError,
 )
 from my_simulations.sensing.process import SensingProcess
+from my_simulations.simulator.scene_sensing import SceneSensing
 from my_simulations.simulator.simulator import Simulator
 
 FAN = RayFan(31, -math.pi / 2, math.pi / 2, far=20.0)
@@ -220,22 +219,48 @@ def test_a_process_that_dies_again_and_again_is_left_alone_until_the_world_chang
     assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)
 
 
-def test_pictures_that_end_the_process_are_given_up_though_rays_are_answered(start, monkeypatch):
-    sensing = start()
-    sensing.change(LoadScene([FLOOR, WALL]))
+def test_a_request_that_does_not_fit_into_the_wire_at_once_is_sent_whole(sensing):
+    assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)
+    os.kill(sensing.pid, signal.SIGSTOP)   # it reads nothing, the wire fills up
+    rays = RayBundle(np.zeros((20000, 3)), np.tile((1.0, 0.0, 0.0), (20000, 1)), far=20.0)
+    futures = [sensing.cast(CastRays(MOUNT, rays, at=PLACES)) for _ in range(3)]
+    sensing.change(RemoveBody("wall"))
+    futures.append(sensing.cast(CastRays(MOUNT, rays, at=PLACES)))
+    os.kill(sensing.pid, signal.SIGCONT)
+    found = [one.result(DEADLINE_S).ranges[[0, -1]] for one in futures]
+    assert np.array(found) == pytest.approx(np.array([[5.0] * 2] * 3 + [[math.inf] * 2]), abs=1e-6)
+
+
+def test_pictures_that_end_their_process_are_given_up_though_rays_are_answered(monkeypatch):
     code = ("import os; from my_simulations.sensing.camera.renderer import Renderer; "
             "Renderer.__init__ = lambda self, trouble: os._exit(4); "
             "import runpy, sys; sys.argv = ['-m'] + sys.argv[1:]; "
             "runpy.run_module('my_simulations.sensing', run_name='__main__')")
     monkeypatch.setattr("my_simulations.sensing.process.child_command",
                         lambda module, *words: [sys.executable, "-c", code, *words])
-    for _ in range(3):
-        assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)
-        with pytest.raises(SensingEndedError, match="code 4"):
-            picture(sensing)
-    with pytest.raises(SensingUnavailableError, match="cameras stay off until the world changes"):
-        picture(sensing)
-    assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)
+    sim = Simulator(World(), engine_factory=ProcessEngine, paused=True, log=lambda issue: None)
+    scene = SceneSensing(sim, lambda issue: None)
+
+    def cast():
+        future = scene.cast(MOUNT, AHEAD, False, 0, PLACES)
+        scene.send()
+        return future.result(DEADLINE_S).ranges[0]
+
+    def taken():
+        [future] = scene.render([(MOUNT, SPEC, (RGB,))], 0, PLACES)
+        return future.result(DEADLINE_S)
+
+    try:
+        for _ in range(3):
+            assert cast() == math.inf
+            with pytest.raises(SensingEndedError, match="code 4"):
+                taken()
+        with pytest.raises(SensingUnavailableError, match="cameras stay off until the world"):
+            taken()
+        assert cast() == math.inf
+    finally:
+        scene.close()
+        sim.close()
 
 
 @pytest.mark.parametrize("change,said", [
@@ -317,39 +342,6 @@ def test_a_fan_and_a_bundle_of_the_same_rays_see_the_same(sensing):
                                    at=PLACES)).result(DEADLINE_S)
     assert np.array_equal(fan.ranges, bundle.ranges)
     assert np.array_equal(fan.link_rows, bundle.link_rows)
-
-
-def test_requests_name_a_state_of_the_running_engine(start):
-    sim = Simulator(World(models=[ground(), ball()], physics=Physics()),
-                    engine_factory=ProcessEngine, paused=True, log=lambda issue: None)
-    sim.start()
-    try:
-        engine = sim._session.supervisor._engine
-        sim.states.set_model_state("ball", Pose((3.0, 0.0, 5.0)), STILL)
-        sim.states.await_posted()
-        sensing = start(engine.ring_fd)
-        row = sim._session.registry.link("ball::link")[0].first_link_row
-        sensing.change(LoadScene([body("ball", Sphere(0.5), row)]))
-        down = Mount(pose=Pose((3.0, 0.0, 10.0), (0.0, math.sqrt(0.5), 0.0, math.sqrt(0.5))))
-        request = CastRays(down, AHEAD, at=engine.ring.latest)
-        found = sensing.cast(request).result(DEADLINE_S)
-        assert found.ranges[0] == pytest.approx(4.5, abs=1e-6)
-        assert found.step == engine.ring.step
-        newest = sensing.cast(CastRays(Mount(row), AHEAD)).result(DEADLINE_S)
-        assert newest.ranges[0] == pytest.approx(0.5, abs=1e-6)  # from inside the ball
-        for _ in range(17):
-            sim.clock.advance(1)
-        with pytest.raises(SnapshotOverwrittenError):
-            sensing.cast(request).result(DEADLINE_S)
-    finally:
-        sim.close()
-
-
-def test_a_process_without_a_ring_wants_rows(start):
-    sensing = start()
-    sensing.change(LoadScene([]))
-    with pytest.raises(SensingError, match="bring rows"):
-        ahead(sensing, at=None)
 
 
 def test_a_model_without_links_is_nothing_to_see(sensing):

@@ -60,7 +60,7 @@ def view(renderer):
             names.append(one.name)
             renderer.add(one)
         renderer.set_scenery(scenery)
-        return renderer.render(SPEC, matrix(eye), table(poses), outputs, 7, ns)
+        return renderer.render(SPEC, matrix(eye), table(poses), outputs, ns)
 
     see.renderer = renderer
     yield see

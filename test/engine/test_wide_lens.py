@@ -41,7 +41,7 @@ def see(renderer):
     def look(shape, pose, lens, outputs, spec=SPEC):
         renderer.add(body("b", shape, 0, Look(diffuse=(1.0, 0.0, 0.0, 1.0), lit=False)))
         return renderer.render(replace(spec, lens=lens), matrix(EYE), table([compose(EYE, pose)]),
-                               outputs, 1)
+                               outputs)
 
     yield look
     renderer.remove("b")

@@ -42,6 +42,18 @@ class Wire:
         """
         self._send(_packed(message))
 
+    def send_now(self, message: object) -> bool:
+        """Send a message after those that are kept, without waiting for the other side.
+
+        Returns False if not all of it fits; `send` and `send_held` send the rest. Raises OSError
+        if the other side is closed.
+        """
+        self.hold(message)
+        with contextlib.suppress(BlockingIOError):
+            sent = self.sock.send(self._held, socket.MSG_DONTWAIT)
+            self._held = self._held[sent:]
+        return not self._held
+
     def send_held(self) -> None:
         """Send the messages that are kept. Raises OSError if the other side is closed."""
         if self._held:

@@ -1,17 +1,14 @@
-"""The sensing process: `python -m my_simulations.sensing REQUESTS RING` (descriptors)."""
+"""The sensing process: `python -m my_simulations.sensing REQUESTS` (a descriptor)."""
 from __future__ import annotations
 
 import os
 import signal
 import socket
 import sys
-from typing import List, Optional
+from typing import List
 
 from ..child_process import die_with_parent
 from ..engine.message_pipe import Wire
-from ..engine.ring import Memory, RingReader
-
-_SWITCH_S = 2e-4  # rays must not wait long for a thread that draws
 
 
 def main(argv: List[str]) -> int:
@@ -20,16 +17,10 @@ def main(argv: List[str]) -> int:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
     die_with_parent()
-    sys.setswitchinterval(_SWITCH_S)
     _leave_a_core()
     from .service import Service
 
-    requests, ring_fd = (int(word) for word in argv[1:3])
-    ring: Optional[RingReader] = None
-    if ring_fd >= 0:
-        ring = RingReader(memory=Memory(ring_fd, read_only=True))
-    service = Service(Wire(socket.socket(fileno=requests)), ring)
-    service.run()
+    Service(Wire(socket.socket(fileno=int(argv[1])))).run()
     return 0
 
 

@@ -1,7 +1,8 @@
 """The interface of the sensing process: its requests and replies.
 
-Sensors hang on links; a link is known by its row in the engine's ring. A request names the state it
-is to be answered for (`At`), so the same request gives the same bytes however late it is worked on.
+Sensors hang on links; a link is known by its row in the engine's ring. A request brings the poses
+of all links (`at`, link rows as in the ring), so the same request gives the same bytes however late
+it is worked on.
 
 Sensor frames are Gazebo's: +x looks forward, y left, z up (SDF `<sensor><pose>`). Nothing heavy is
 imported here: neither NumPy, Embree nor OpenGL.
@@ -41,21 +42,9 @@ COLLISIONS, VISUALS = "collisions", "visuals"
 RGB, DEPTH, LABELS = "rgb", "depth", "labels"
 """What a camera can give; several of them in one request."""
 
-At = Union[None, int, bytes]
-"""The state to look at: a ring sequence, link rows as `RingReader.raw_links` gives them, or None.
-
-A sequence is copied when the request arrives at the process, and fails with
-`SnapshotOverwrittenError` when it has been overwritten (16 snapshots later). Rows never fail. None
-is the newest state.
-"""
-
 
 class SensingError(SimulationError):
     """A request without an answer; the message is one sentence for the user."""
-
-
-class SnapshotOverwrittenError(SensingError):
-    """The state was overwritten before the process could copy it: this sample is left out."""
 
 
 class SensingEndedError(SensingError):
@@ -195,7 +184,7 @@ class CastRays:
     mount: Mount
     rays: Union[RayFan, RayBundle]
     sees: str = COLLISIONS
-    at: At = None
+    at: bytes = b""
     ns: int = 0
 
 
@@ -207,7 +196,7 @@ class CastBatch:
     """
 
     casts: Tuple[CastRays, ...]
-    at: At = None
+    at: bytes = b""
 
 
 @dataclass(frozen=True)
@@ -220,7 +209,7 @@ class RenderCamera:
     mount: Mount
     camera: CameraSpec
     outputs: Tuple[str, ...] = (RGB,)
-    at: At = None
+    at: bytes = b""
     ns: int = 0
 
 
@@ -234,25 +223,22 @@ class RayReturns:
             nothing is met up to `far`. Not clipped, without noise.
         retro: float32 (n,), `laser_retro` of what is met, 0 for nothing.
         link_rows: int32 (n,), the link that is met, NO_ROW for nothing.
-        step: the engine's step count of the state; -1 where the request brought rows.
     """
 
     ranges: "np.ndarray"
     retro: "np.ndarray"
     link_rows: "np.ndarray"
-    step: int = -1
 
     def __reduce__(self) -> "Tuple[object, ...]":
         """Between the processes, plain bytes: arrays of their own take six times as long."""
-        return _returns, (bytearray(self.ranges), bytearray(self.retro),
-                          bytearray(self.link_rows), self.step)
+        return _returns, (bytearray(self.ranges), bytearray(self.retro), bytearray(self.link_rows))
 
 
-def _returns(ranges: bytearray, retro: bytearray, link_rows: bytearray, step: int) -> RayReturns:
+def _returns(ranges: bytearray, retro: bytearray, link_rows: bytearray) -> RayReturns:
     import numpy as np
 
     return RayReturns(np.frombuffer(ranges, np.float64), np.frombuffer(retro, np.float32),
-                      np.frombuffer(link_rows, np.int32), step)
+                      np.frombuffer(link_rows, np.int32))
 
 
 @dataclass(frozen=True)
@@ -263,13 +249,11 @@ class Pictures:
         rgb: uint8 (height, width, 3).
         depth: float32 (height, width), metres along +x; inf where there is nothing up to `far`.
         labels: int32 (height, width), link rows, NO_ROW for nothing.
-        step: as in `RayReturns`.
     """
 
     rgb: "Optional[np.ndarray]" = None
     depth: "Optional[np.ndarray]" = None
     labels: "Optional[np.ndarray]" = None
-    step: int = -1
 
 
 @dataclass(frozen=True)

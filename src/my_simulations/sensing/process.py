@@ -9,7 +9,7 @@ import subprocess
 import threading
 import time
 from concurrent.futures import Future
-from typing import Any, Callable, Dict, List, Optional, Set, Tuple, Union
+from typing import Any, Callable, Dict, List, Optional, Tuple, Union
 
 from ..child_process import (
     await_end,
@@ -41,7 +41,6 @@ _END_S = 3.0  # how long a child may take to end by itself
 _START_S = 60.0  # and to start, on a machine that does much else
 _MOST_WAITING = 256
 _MOST_DEATHS = 3
-_RAYS, _PICTURES = "lasers", "cameras"
 
 
 class _Waiting:
@@ -52,13 +51,13 @@ class _Waiting:
         self.future: "Future[Any]" = Future()
         self.since = time.monotonic()
 
-    @property
-    def kind(self) -> str:
-        return _PICTURES if isinstance(self.request, RenderCamera) else _RAYS
+
+class _Rest:
+    """The rest of a message, which the wire keeps."""
 
 
 class SensingProcess:
-    """A child that casts rays and draws.
+    """A child that casts rays or draws, one request after the other.
 
     All calls return at once and are safe from any thread. Changes and requests take effect in the
     order of the calls. A future of a request fails with a `SensingError`.
@@ -66,23 +65,25 @@ class SensingProcess:
     The child process starts with the first request. Separate threads do everything that could
     block, so a child that hangs blocks no caller: it is ended after `patience` s. After a death
     the next request starts another child with the same scene; three deaths in a row without an
-    answer to rays, or to pictures, and requests of that kind fail at once until the scene changes.
+    answer, and requests fail at once until the scene changes.
 
     Args:
-        ring_fd: descriptor of the engine's ring; -1 where all requests bring their rows.
+        sensors: what it is for, as messages say it.
         patience: s without an answer to a request, once the child has started.
     """
 
-    def __init__(self, ring_fd: int = -1, patience: float = 60.0) -> None:
-        self._ring_fd = ring_fd
+    def __init__(self, sensors: str = "lasers and cameras", patience: float = 60.0) -> None:
+        self._sensors = sensors
         self._patience = patience
         self._lock = threading.Lock()
         self._scene = SceneState()  # the writer's, once there is one
-        self._outbox: "queue.Queue[Union[None, Change, Tuple[int, _Waiting]]]" = queue.Queue()
+        self._outbox: "queue.Queue[Union[None, Change, _Rest, Tuple[int, _Waiting]]]" = \
+            queue.Queue()
+        self._unsent = 0  # in the outbox, or with the writer
         self._waiting: Dict[int, _Waiting] = {}
         self._numbers = 0
-        self._deaths = {_RAYS: 0, _PICTURES: 0}   # while such requests waited, in a row
-        self._refusals: Dict[str, str] = {}
+        self._deaths = 0   # while requests waited, in a row
+        self._refusal = ""
         self._closing = False
         self._writer: Optional[threading.Thread] = None
         self._reader: Optional[threading.Thread] = None
@@ -103,12 +104,11 @@ class SensingProcess:
 
     def change(self, change: Change) -> None:
         with self._lock:
-            self._refusals.clear()
-            self._deaths = dict.fromkeys(self._deaths, 0)
+            self._refusal, self._deaths = "", 0
             if self._writer is None:
                 self._scene.apply(change)
             else:
-                self._outbox.put(change)
+                self._put(change)
 
     def cast(self, request: CastRays) -> "Future[RayReturns]":
         return self._submit(request)
@@ -118,30 +118,44 @@ class SensingProcess:
         return self._submit(request)
 
     def render(self, request: RenderCamera) -> "Future[Pictures]":
-        """Pictures; rays do not wait for them."""
         return self._submit(request)
 
     def _submit(self, request: Request) -> "Future[Any]":
         waiting = _Waiting(request)
         with self._lock:
-            fault = self._fault(waiting.kind)
+            fault = self._fault()
             if fault is None:
                 self._numbers += 1
                 self._waiting[self._numbers] = waiting
-                self._outbox.put((self._numbers, waiting))
-                if self._writer is None:
-                    self._writer = threading.Thread(target=self._write, name="sensing requests",
-                                                    daemon=True)
-                    self._writer.start()
+                self._send_or_put(self._numbers, waiting)
         if fault is not None:
             waiting.future.set_exception(fault)
         return waiting.future
 
-    def _fault(self, kind: str) -> Optional[SensingError]:
+    def _send_or_put(self, number: int, waiting: _Waiting) -> None:
+        """Send a request from this thread if nothing is before it, else through the writer."""
+        if self._wire is None or self._unsent:
+            self._put((number, waiting))
+            if self._writer is None:
+                self._writer = threading.Thread(target=self._write, name="sensing requests",
+                                                daemon=True)
+                self._writer.start()
+            return
+        try:
+            if not self._wire.send_now((number, waiting.request)):
+                self._put(_Rest())
+        except OSError as fault:
+            self._log_lost_wire(fault)
+
+    def _put(self, item: "Union[Change, _Rest, Tuple[int, _Waiting]]") -> None:
+        self._unsent += 1
+        self._outbox.put(item)
+
+    def _fault(self) -> Optional[SensingError]:
         if self._closing:
             return SensingEndedError("the sensing process is being closed")
-        if kind in self._refusals:
-            return SensingUnavailableError(self._refusals[kind])
+        if self._refusal:
+            return SensingUnavailableError(self._refusal)
         if len(self._waiting) >= _MOST_WAITING:
             return SensingError(f"{_MOST_WAITING} rays and pictures are waiting already: "
                                 "this one is left out")
@@ -177,19 +191,22 @@ class SensingProcess:
             item = self._outbox.get()
             if item is None:
                 break
-            if not isinstance(item, tuple):
+            if isinstance(item, tuple):
+                self._write_request(*item)
+            elif isinstance(item, _Rest):
+                self._send(Wire.send_held)
+            else:
                 self._scene.apply(item)
-                if self._wire is not None:
-                    self._send((0, item))
-                continue
-            number, waiting = item
+                self._send(Wire.send, (0, item))
             with self._lock:
-                known = number in self._waiting
-            if known:
-                if self._wire is None and not self._start():
-                    continue
-                self._send((number, waiting.request))
+                self._unsent -= 1
         self._shut_down_wire()
+
+    def _write_request(self, number: int, waiting: _Waiting) -> None:
+        with self._lock:
+            known = number in self._waiting
+        if known and (self._wire is not None or self._start()):
+            self._send(Wire.send, (number, waiting.request))
 
     def _start(self) -> bool:
         reader = self._reader
@@ -208,18 +225,16 @@ class SensingProcess:
         self._reader = threading.Thread(target=self._read, args=(child, wire),
                                         name="sensing answers", daemon=True)
         self._reader.start()
-        self._send((0, self._scene.load_command()))
+        self._send(Wire.send, (0, self._scene.load_command()))
         return True
 
     def _spawn(self) -> "Tuple[subprocess.Popen[bytes], Wire]":
         """A child, and this end of what it is talked to through. Raises OSError."""
         ours, theirs = socket.socketpair()
-        inherited = [theirs.fileno()] + ([self._ring_fd] if self._ring_fd >= 0 else [])
-        arguments = [str(theirs.fileno()), str(self._ring_fd)]
         try:
             with signals_blocked():
                 child = subprocess.Popen(
-                    child_command("sensing", *arguments), pass_fds=inherited,
+                    child_command("sensing", str(theirs.fileno())), pass_fds=[theirs.fileno()],
                     stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, env=child_environment())
         except OSError:
             ours.close()
@@ -228,14 +243,19 @@ class SensingProcess:
             theirs.close()
         return child, Wire(ours)
 
-    def _send(self, message: object) -> None:
+    def _send(self, send: Callable[..., None], *message: object) -> None:
+        """Call a method of the wire, if there is one."""
         wire = self._wire
         try:
             if wire is not None:
-                wire.send(message)
+                send(wire, *message)
         except OSError as fault:
-            # The reader sees the same end, and fails the pending requests.
-            _log.debug("the sensing process does not listen: %s", fault)
+            self._log_lost_wire(fault)
+
+    @staticmethod
+    def _log_lost_wire(fault: OSError) -> None:
+        # The reader sees the same end, and fails the pending requests.
+        _log.debug("the sensing process does not listen: %s", fault)
 
     # The reader of one child.
 
@@ -266,7 +286,7 @@ class SensingProcess:
         with self._lock:
             waiting = self._waiting.pop(number, None)
             if waiting is not None:
-                self._deaths[waiting.kind] = 0
+                self._deaths = 0
             for later in self._waiting.values():
                 later.since = time.monotonic()  # it works through them
         if waiting is None:
@@ -291,22 +311,21 @@ class SensingProcess:
             closing = self._closing
             if wire is not None:
                 wire.sock.close()
-            given_up = self._count_death(reason, {one.kind for one in waiting.values()})
+            if waiting:
+                self._count_death(reason)
+            refusal = self._refusal
         if not closing:
-            self._listener(given_up or f"{reason}; physics goes on, and the next ray or picture "
+            self._listener(refusal or f"{reason}; physics goes on, and the next ray or picture "
                            "starts another")
         for one in waiting.values():
             one.future.set_exception(SensingEndedError(reason))
 
-    def _count_death(self, reason: str, kinds: Set[str]) -> str:
-        """Count a death with such requests pending; returns the message if a kind is given up."""
-        for kind in kinds:
-            self._deaths[kind] += 1
-        ended = sorted(kind for kind in kinds if self._deaths[kind] >= _MOST_DEATHS)
-        text = (f"{reason}, the {_MOST_DEATHS}rd time in a row: {' and '.join(ended)} stay off "
-                "until the world changes")
-        self._refusals.update((kind, text) for kind in ended)
-        return text if ended else ""
+    def _count_death(self, reason: str) -> None:
+        """Count a death with requests pending; refuse more after too many."""
+        self._deaths += 1
+        if self._deaths >= _MOST_DEATHS:
+            self._refusal = (f"{reason}, the {_MOST_DEATHS}rd time in a row: {self._sensors} stay"
+                             " off until the world changes")
 
 
 def _reason(code: int) -> str:

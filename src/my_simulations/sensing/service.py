@@ -1,24 +1,18 @@
-"""The child's inside: one thread receives and copies poses, one casts rays, one draws."""
+"""The child's inside: it casts rays and draws, one request after the other."""
 from __future__ import annotations
 
-import os
-import queue
-import threading
-import traceback
 from typing import Any, Callable, Dict, List, Optional, Tuple, Union
 
 import numpy as np
 
 from ..appearance.looks import Look
 from ..engine.message_pipe import Wire
-from ..engine.ring import RingReader
 from .api import (
     COLLISIONS,
     PROBLEM,
     READY,
     VISUALS,
     WORLD_ROW,
-    At,
     Body,
     CastBatch,
     CastRays,
@@ -29,31 +23,21 @@ from .api import (
     RayReturns,
     RenderCamera,
     SensingError,
-    SnapshotOverwrittenError,
 )
 from .poses import matrices, matrix, rows_of
 from .scene import SceneState
-
-_FAULT = 70
-
-State = Tuple[np.ndarray, int]
-"""Poses (n, 7) by link row, and the step count."""
 
 
 class Service:
     """Answers until the parent hangs up."""
 
-    def __init__(self, wire: Wire, ring: Optional[RingReader]) -> None:
+    def __init__(self, wire: Wire) -> None:
         self._wire = wire
-        self._ring = ring
-        self._sending = threading.Lock()
-        # Rays are short: a request that brings its rows is spared the way to another thread. One
-        # that names a state of the ring is copied from there while others are cast.
-        self._rays = _Worker("rays", _Rays(self.report_problem), self._reply, at_once=ring is None)
-        self._camera = _Worker("camera", _Camera(self.report_problem), self._reply)
+        self._rays = _Rays(self.report_problem)
+        self._camera = _Camera(self.report_problem)
 
     def run(self) -> None:
-        """Receive; what each request is to see is copied before the next is looked at."""
+        """Receive changes of the scene and requests, and answer these."""
         self._reply(READY, None)
         while True:
             try:
@@ -61,86 +45,29 @@ class Service:
             except (EOFError, OSError):
                 return
             for number, message in messages:
-                self._dispatch(number, message)
+                if number:
+                    self._answer(number, message)
+                else:
+                    self._rays.change(message)
+                    self._camera.change(message)
 
-    def _dispatch(self, number: int, message: Any) -> None:
-        if number == 0:
-            self._rays.put(0, message, None)
-            self._camera.put(0, message, None)
-            return
+    def _answer(self, number: int, message: Any) -> None:
+        viewer: Union[_Rays, _Camera] = (
+            self._camera if isinstance(message, RenderCamera) else self._rays)
         try:
-            state = self._state(message.at)
+            self._reply(number, viewer.answer(message, rows_of(message.at)))
         except SensingError as fault:
             self._reply(number, fault)
-            return
-        worker = self._rays if isinstance(message, (CastRays, CastBatch)) else self._camera
-        worker.put(number, message, state)
-
-    def _state(self, at: At) -> State:
-        if isinstance(at, bytes):
-            return rows_of(at), -1
-        if self._ring is None:
-            raise SensingError("this simulation has no shared states: requests must bring rows")
-        if at is None:
-            step, _, rows = self._ring.raw_poses()
-            return rows_of(rows), step
-        found = self._ring.earlier_links(at)
-        if found is None:
-            raise SnapshotOverwrittenError(f"state {at} is gone, the simulation runs too far ahead")
-        return rows_of(found[1]), found[0]
 
     def _reply(self, number: int, answer: object) -> None:
-        with self._sending:
-            try:
-                self._wire.send((number, answer))
-            except OSError:
-                return  # the parent is gone: `run` sees it, too
+        try:
+            self._wire.send((number, answer))
+        except OSError:
+            return  # the parent is gone: `run` sees it, too
 
     def report_problem(self, text: str) -> None:
         """Report to the parent what is left out."""
         self._reply(PROBLEM, text)
-
-
-class _Worker:
-    """A thread with a queue; it begins with the first request. Changes before are taken at once:
-    they only describe what the first request will find, and no thread empties the queue yet.
-
-    `at_once`: there is no thread; `put` does the work itself.
-    """
-
-    def __init__(self, name: str, viewer: "Union[_Rays, _Camera]",
-                 reply: Callable[[int, object], None], at_once: bool = False) -> None:
-        self._name = name
-        self._viewer = viewer
-        self._reply = reply
-        self._at_once = at_once
-        self._queue: "queue.Queue[Tuple[int, Any, Optional[State]]]" = queue.Queue()
-        self._thread: Optional[threading.Thread] = None
-
-    def put(self, number: int, message: object, state: Optional[State]) -> None:
-        if self._at_once or (not number and self._thread is None):
-            self._work(number, message, state)
-            return
-        if self._thread is None:
-            self._thread = threading.Thread(target=self._run, name=self._name, daemon=True)
-            self._thread.start()
-        self._queue.put((number, message, state))
-
-    def _run(self) -> None:
-        while True:
-            self._work(*self._queue.get())
-
-    def _work(self, number: int, message: Any, state: Optional[State]) -> None:
-        try:
-            if state is None:
-                self._viewer.change(message)
-            else:
-                self._reply(number, self._viewer.answer(message, state))
-        except SensingError as fault:
-            self._reply(number, fault)
-        except Exception:  # a fault of ours: the parent starts another process
-            traceback.print_exc()
-            os._exit(_FAULT)
 
 
 class _Rays:
@@ -168,20 +95,19 @@ class _Rays:
                 scene.set_scenery(self._world.scenery)
 
     def answer(self, request: Union[CastRays, CastBatch],
-               state: State) -> Union[RayReturns, List[Union[RayReturns, SensingError]]]:
+               poses: np.ndarray) -> Union[RayReturns, List[Union[RayReturns, SensingError]]]:
         if isinstance(request, CastRays):
-            return self._cast(request, state)
+            return self._cast(request, poses)
         found: List[Union[RayReturns, SensingError]] = []
         for one in request.casts:
             try:
-                found.append(self._cast(one, state))
+                found.append(self._cast(one, poses))
             except SensingError as fault:
                 found.append(fault)
         return found
 
-    def _cast(self, request: CastRays, state: State) -> RayReturns:
+    def _cast(self, request: CastRays, poses: np.ndarray) -> RayReturns:
         scene = self._scenes.get(request.sees) or self._made(request.sees)
-        poses, step = state
         frame = sensor_frame(request.mount, poses)
         rays = request.rays
         if isinstance(rays, RayBundle):
@@ -191,9 +117,9 @@ class _Rays:
             directions, origins = self._fan(rays), frame[:3, 3]
         scene.move(poses, request.ns)
         if not len(directions):
-            return RayReturns(np.zeros(0), np.zeros(0, np.float32), np.zeros(0, np.int32), step)
+            return RayReturns(np.zeros(0), np.zeros(0, np.float32), np.zeros(0, np.int32))
         ranges, retro, rows = scene.cast(origins, directions @ frame[:3, :3].T, rays.near, rays.far)
-        return RayReturns(ranges, retro, rows, step)
+        return RayReturns(ranges, retro, rows)
 
     def _fan(self, fan: Any) -> np.ndarray:
         found = self._fans.get(fan)
@@ -257,7 +183,7 @@ class _Camera:
         self._renderer.set_lights(self._world.lights, self._world.scene)
         self._renderer.set_scenery(self._world.scenery)
 
-    def answer(self, request: RenderCamera, state: State) -> Pictures:
+    def answer(self, request: RenderCamera, poses: np.ndarray) -> Pictures:
         if self._renderer is None:
             from .camera.renderer import Renderer
 
@@ -266,10 +192,8 @@ class _Camera:
                 self._renderer.add(body)
             self._renderer.set_lights(self._world.lights, self._world.scene)
             self._renderer.set_scenery(self._world.scenery)
-        poses, step = state
-        frame = sensor_frame(request.mount, poses)
-        pictures: Pictures = self._renderer.render(request.camera, frame, poses, request.outputs,
-                                                   step, request.ns)
+        pictures: Pictures = self._renderer.render(
+            request.camera, sensor_frame(request.mount, poses), poses, request.outputs, request.ns)
         return pictures
 
 

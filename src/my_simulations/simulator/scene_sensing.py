@@ -1,4 +1,4 @@
-"""Rays and pictures of the world: the sensing process, told of what there is."""
+"""Rays and pictures of the world: the sensing processes, told of what there is."""
 from __future__ import annotations
 
 from concurrent.futures import Future
@@ -12,6 +12,7 @@ from ..sensing.api import (
     CameraSpec,
     CastBatch,
     CastRays,
+    Change,
     Mount,
     Pictures,
     RayBundle,
@@ -34,16 +35,19 @@ Shot = Tuple[Mount, CameraSpec, Tuple[str, ...]]
 
 
 class SceneSensing:
-    """Casts rays and takes pictures; nothing is started before the first. For one thread.
+    """Casts rays and takes pictures, each in a process of its own. For one thread.
+
+    Rays do not wait for pictures, which take a hundred times as long, and are not lost with them. A
+    process starts with the first request.
 
     Args:
         simulator: the world that is looked at.
-        log: hears of what is left out, and of deaths of the process.
+        log: hears of what is left out, and of deaths of the processes.
     """
 
     def __init__(self, simulator: Simulator, log: Callable[[Issue], None]) -> None:
         self._simulator, self._log = simulator, log
-        self._process: "Optional[SensingProcess]" = None
+        self._processes: "Optional[Tuple[SensingProcess, SensingProcess]]" = None
         self._materials: Any = None
         self._casts: "List[Tuple[CastRays, Future[RayReturns]]]" = []
         self._cast_at = b""
@@ -66,7 +70,7 @@ class SceneSensing:
             ns: sim time of the rows.
             rows: of all links, as in the ring.
         """
-        self._running()
+        self._update()
         if visuals:
             self._send_scenery()
         future: "Future[RayReturns]" = Future()
@@ -84,23 +88,25 @@ class SceneSensing:
         casts, self._casts = self._casts, []
         futures = [future for _, future in casts]
         batch = CastBatch(tuple(cast for cast, _ in casts), self._cast_at)
-        self._running().cast_all(batch).add_done_callback(lambda done: _set_results(done, futures))
+        rays, _ = self._update()
+        rays.cast_all(batch).add_done_callback(lambda done: _set_results(done, futures))
 
     def render(self, shots: Sequence[Shot], ns: int, rows: bytes) -> "List[Future[Pictures]]":
         """Pictures, one of each shot; of the rows of all links, as of a sim time (ns)."""
-        process = self._running()
+        _, cameras = self._update()
         self._send_surroundings()
         self._send_scenery()
-        return [process.render(RenderCamera(mount, camera, outputs, rows, ns))
+        return [cameras.render(RenderCamera(mount, camera, outputs, rows, ns))
                 for mount, camera, outputs in shots]
 
     def close(self) -> None:
-        if self._process is not None:
-            self._process.close()
-            self._process = None
+        for process in self._processes or ():
+            process.close()
+        self._processes = None
 
-    def _running(self) -> "SensingProcess":
-        if self._process is None:
+    def _update(self) -> "Tuple[SensingProcess, SensingProcess]":
+        """The processes for rays and for pictures, told of the models."""
+        if self._processes is None:
             from ..appearance.materials import Materials
             from ..appearance.textures import TextureFiles
             from ..resources.resolver import Resolver
@@ -108,35 +114,38 @@ class SceneSensing:
 
             resolver = self._resolver = Resolver.from_environment()
             self._materials = Materials(resolver, TextureFiles(resolver))
-            process = self._process = SensingProcess()
-            process.on_problem(lambda text: self._log(warning("sensing", text)))
+            self._processes = SensingProcess("lasers"), SensingProcess("cameras")
+            for process in self._processes:
+                process.on_problem(lambda text: self._log(warning("sensing", text)))
         revision, entities = self._simulator.models.inventory()
         if revision != self._revision:
             self._revision = revision
             self._send_models({entity.model.name: entity for entity in entities})
-        return self._process
+        return self._processes
+
+    def _change(self, change: Change) -> None:
+        for process in self._processes or ():
+            process.change(change)
 
     def _send_models(self, present: Dict[str, Entity]) -> None:
         from ..sensing.scene import body
 
-        assert self._process is not None
-        change = self._process.change
         for name in [name for name in self._known if name not in present]:
-            change(RemoveBody(name))
+            self._change(RemoveBody(name))
         for name, entity in present.items():
             if self._known.get(name) is not entity:
-                change(AddBody(body(name, entity.model, entity.first_link_row, self._materials)))
+                self._change(AddBody(body(name, entity.model, entity.first_link_row,
+                                          self._materials)))
         self._known = present
 
     def _send_surroundings(self) -> None:
         """Send the lights and the scene if they have changed."""
-        assert self._process is not None
         world = self._simulator.world
         lights, scene = world.lights, world.scene
         if not self._surroundings or self._surroundings[0] is not lights \
                 or self._surroundings[1] is not scene:
             self._surroundings = (lights, scene)
-            self._process.change(SetLights(list(lights), scene))
+            self._change(SetLights(list(lights), scene))
 
     def _send_scenery(self) -> None:
         """Send roads and actors if they have changed."""
@@ -147,8 +156,7 @@ class SceneSensing:
         if any((*before, *self._scenery)):
             from ..sensing.scene import scenery
 
-            assert self._process is not None
-            self._process.change(scenery(world, self._materials, self._resolver))
+            self._change(scenery(world, self._materials, self._resolver))
 
 
 def _set_results(done: "Future[List[Union[RayReturns, SensingError]]]",

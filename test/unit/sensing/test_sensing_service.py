@@ -3,8 +3,6 @@ from __future__ import annotations
 
 import weakref
 
-import pytest
-
 from my_simulations.description.model import Link, Model
 from my_simulations.sensing.api import AddBody, Body, RemoveBody
 from my_simulations.sensing.service import Service
@@ -25,12 +23,7 @@ class Wire:
         pass
 
 
-class Ring:
-    """A shared state ring without requests. With a ring, a thread also casts rays."""
-
-
-@pytest.mark.parametrize("ring", [None, Ring()], ids=["no ring", "ring"])
-def test_models_that_have_gone_are_not_kept_for_a_first_request(ring):
+def test_models_that_have_gone_are_not_kept_for_a_first_request():
     gone = []
 
     def changes():
@@ -42,8 +35,8 @@ def test_models_that_have_gone_are_not_kept_for_a_first_request(ring):
             yield RemoveBody("box")
         yield AddBody(Body("last", Model("last", links=[Link("link")]), 0))
 
-    service = Service(Wire(changes()), ring)
+    service = Service(Wire(changes()))
     service.run()
     assert len(gone) == 3 and not any(one() for one in gone)
-    assert all(list(worker._viewer._world.bodies) == ["last"]
-               for worker in (service._rays, service._camera))
+    assert all(list(viewer._world.bodies) == ["last"]
+               for viewer in (service._rays, service._camera))

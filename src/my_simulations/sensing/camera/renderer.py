@@ -147,7 +147,7 @@ class Renderer:
             batch.add("", part.row, np.eye(4))
 
     def render(self, spec: CameraSpec, frame: np.ndarray, poses: np.ndarray,
-               outputs: Tuple[str, ...], step: int, ns: int = 0) -> Pictures:
+               outputs: Tuple[str, ...], ns: int = 0) -> Pictures:
         """Pictures from a sensor at `frame` (world from sensor), links at `poses`, at `ns`.
 
         Raises SensingError for a camera with impossible numbers.
@@ -157,7 +157,7 @@ class Renderer:
         drawn = self._kept.get((spec, outputs, frame.tobytes()),
                                (placed.tobytes(), self._scenery.forms(ns)),
                                lambda: self._seen(spec, frame, placed, outputs, ns))
-        return Pictures(*drawn, step)
+        return Pictures(*drawn)
 
     def _seen(self, spec: CameraSpec, frame: np.ndarray, poses: np.ndarray,
               outputs: Tuple[str, ...], ns: int) -> Drawn:
