@@ -12,7 +12,7 @@ from ..geometry import Pose, rpy_from_quat
 from ..python_api import OpenWorld, Randomisation, WorldChoice
 from ..resources.package_files import own_directory
 from .task_models import box, disc, world_file
-from .world_env import Evaluation, View, WorldEnv, clipped_observation
+from .world_env import Evaluation, View, WorldEnv, clipped_action, clipped_observation
 
 FASTEST = 0.5      # m/s
 TURNS = 1.5        # rad/s
@@ -79,7 +79,7 @@ class Navigate:
         self._before = math.dist(self._mark, robot)
 
     def act(self, world: OpenWorld, action: Any) -> None:
-        forward, turn = (float(value) for value in np.clip(action, -1.0, 1.0))
+        forward, turn = clipped_action(action).tolist()
         world.publish("/cmd_vel", {"linear": {"x": forward * FASTEST},
                                    "angular": {"z": turn * TURNS}})
 

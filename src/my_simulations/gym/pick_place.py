@@ -13,7 +13,14 @@ from ..python_api import OpenWorld, Randomisation, RobotOptions, WorldChoice
 from ..python_api.kinematics import damped_step
 from . import arm_scene
 from .task_models import box, disc
-from .world_env import Evaluation, View, WorldEnv, clipped_observation, symmetric_box
+from .world_env import (
+    Evaluation,
+    View,
+    WorldEnv,
+    clipped_action,
+    clipped_observation,
+    symmetric_box,
+)
 
 SIZE = 0.04          # m, of the cube
 FASTEST = 0.3        # m/s, of the tool
@@ -83,7 +90,7 @@ class PickAndPlace:
         arm_scene.drive_fingers(world, False)
 
     def act(self, world: OpenWorld, action: Any) -> None:
-        *speeds, grip = (float(value) for value in np.clip(action, -1.0, 1.0))
+        *speeds, grip = clipped_action(action).tolist()
         arm_scene.drive_axes(world, _axis_rates(world, np.array(speeds) * FASTEST))
         arm_scene.drive_fingers(world, grip > 0.0)
 

@@ -12,7 +12,14 @@ from ..geometry import Pose, rpy_from_quat
 from ..python_api import OpenWorld, Randomisation, RobotOptions, WorldChoice
 from ..resources.package_files import own_directory
 from .task_models import world_file
-from .world_env import Evaluation, View, WorldEnv, clipped_observation, symmetric_box
+from .world_env import (
+    Evaluation,
+    View,
+    WorldEnv,
+    clipped_action,
+    clipped_observation,
+    symmetric_box,
+)
 
 FASTEST = 0.5     # m/s
 TURNS = 2.0       # rad/s
@@ -70,7 +77,7 @@ class PushBox:
         self._before = None
 
     def act(self, world: OpenWorld, action: Any) -> None:
-        forward, turn = (float(value) for value in np.clip(action, -1.0, 1.0))
+        forward, turn = clipped_action(action).tolist()
         ahead, aside = forward * FASTEST, turn * TURNS * _SEPARATION / 2.0
         world.robot("robo").drive({"left_wheel_joint": (ahead - aside) / _RADIUS,
                                    "right_wheel_joint": (ahead + aside) / _RADIUS}, effort=_TORQUE)

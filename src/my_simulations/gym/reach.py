@@ -11,7 +11,14 @@ from ..geometry import Pose
 from ..python_api import OpenWorld, Randomisation, RobotOptions, WorldChoice
 from . import arm_scene
 from .task_models import ball, world_file
-from .world_env import Evaluation, View, WorldEnv, clipped_observation, symmetric_box
+from .world_env import (
+    Evaluation,
+    View,
+    WorldEnv,
+    clipped_action,
+    clipped_observation,
+    symmetric_box,
+)
 
 NEAR = 0.03         # m: the tool has arrived
 _FAR, _FAST = 10.0, 20.0  # bounds of observations, m or rad, rad/s
@@ -52,7 +59,7 @@ class Reach:
         self._left = None
 
     def act(self, world: OpenWorld, action: Any) -> None:
-        arm_scene.drive_axes(world, np.clip(action, -1.0, 1.0) * arm_scene.FASTEST)
+        arm_scene.drive_axes(world, clipped_action(action) * arm_scene.FASTEST)
 
     def observe(self, world: OpenWorld) -> Any:
         arm = arm_scene.read_arm(world, world.links())

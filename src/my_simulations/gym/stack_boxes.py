@@ -12,7 +12,14 @@ import numpy as np
 from ..geometry import Pose
 from ..python_api import OpenWorld, Randomisation, RobotOptions, WorldChoice
 from ..resources.package_files import own_directory
-from .world_env import Evaluation, View, WorldEnv, clipped_observation, symmetric_box
+from .world_env import (
+    Evaluation,
+    View,
+    WorldEnv,
+    clipped_action,
+    clipped_observation,
+    symmetric_box,
+)
 
 SIZE = 0.05       # m, of a box
 FASTEST = 0.25    # m/s, of an axis
@@ -98,7 +105,7 @@ class StackBoxes:
         self._left = None
 
     def act(self, world: OpenWorld, action: Any) -> None:
-        *speeds, grip = (float(value) for value in np.clip(action, -1.0, 1.0))
+        *speeds, grip = clipped_action(action).tolist()
         gripper, opening = world.robot("gripper"), _OPENING if grip > 0.0 else -_OPENING
         gripper.drive({axis: speed * FASTEST for axis, speed in zip(AXES, speeds)}, effort=_DRIVE)
         gripper.drive({finger: opening for finger in FINGERS}, effort=GRIP)

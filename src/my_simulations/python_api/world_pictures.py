@@ -4,7 +4,7 @@ from __future__ import annotations
 import math
 from concurrent.futures import TimeoutError as FutureTimeoutError
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Dict, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, List, Optional, Sequence, Tuple
 
 from ..errors import CommandError
 from ..geometry import Pose, Vec3, compose, norm, quat_from_rpy, subtract
@@ -108,20 +108,15 @@ class Photographer:
             raise CommandError(f"no picture: {fault}") from fault
         except FutureTimeoutError as fault:
             raise CommandError(f"no picture within {_PATIENCE_S:g} s") from fault
-        numbers, names = self._links()
-        labels = None if found.labels is None else _number_rows(found.labels, numbers)
-        return Picture(ns * 1e-9, found.rgb, found.depth, labels, names)
-
-    def _links(self) -> Tuple[Dict[int, int], Tuple[str, ...]]:
-        """Numbers of links in the order of `names`, by row; and the names."""
-        rows = self._simulator.states.link_names()
-        return {row: number for number, row in enumerate(rows)}, tuple(rows.values())
+        names = self._simulator.states.link_names()
+        labels = None if found.labels is None else _number_rows(found.labels, list(names))
+        return Picture(ns * 1e-9, found.rgb, found.depth, labels, tuple(names.values()))
 
 
-def _number_rows(rows: "np.ndarray", numbers: Dict[int, int]) -> "np.ndarray":
+def _number_rows(rows: "np.ndarray", links: "List[int]") -> "np.ndarray":
+    """Replace rows of links by their places in `links`."""
     import numpy as np
 
-    table = np.full(max([NO_ROW, *numbers, int(rows.max(initial=NO_ROW))]) + 2, -1, np.int32)
-    for row, number in numbers.items():
-        table[row] = number
+    table = np.full(max([NO_ROW, *links, int(rows.max(initial=NO_ROW))]) + 2, -1, np.int32)
+    table[links] = np.arange(len(links))
     return table[rows]  # NO_ROW is the last entry, which stays -1

@@ -128,9 +128,8 @@ class States:
 
     def link_names(self) -> Dict[int, str]:
         """Scoped names of all links, by row."""
-        return {entity.first_link_row + n: f"{entity.model.name}::{link}"
-                for entity in self._session.entities()
-                for n, link in enumerate(entity.link_names)}
+        return {row: link for entity in self._session.entities()
+                for row, link in zip(entity.link_ids, entity.scoped_links)}
 
     def contacts(self) -> List[Tuple[str, str, Contact]]:
         """The contacts of the last step, with the scoped names of both links."""
