@@ -2,8 +2,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Dict, Iterator, Mapping, Sequence, Tuple
+from functools import cached_property, lru_cache
+from typing import Dict, Iterator, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -24,12 +24,16 @@ class NamedRows(Mapping[str, np.ndarray]):
         array: shape (names, width), or (names,) where a row is one number.
     """
 
-    def __init__(self, names: Sequence[str], array: np.ndarray) -> None:
+    def __init__(self, names: Sequence[str], array: np.ndarray,
+                 rows: Optional[Mapping[str, int]] = None) -> None:
+        """`rows`: the row of each name, if it is known."""
         self.names: Tuple[str, ...] = tuple(names)
         self.array = array
+        if rows is not None:
+            self._rows = rows
 
     @cached_property
-    def _rows(self) -> Dict[str, int]:
+    def _rows(self) -> Mapping[str, int]:
         return {name: row for row, name in enumerate(self.names)}
 
     def __getitem__(self, name: str) -> np.ndarray:
@@ -137,6 +141,29 @@ class SavedState:
     state: ExactState
 
 
+@dataclass(frozen=True)
+class _Layout:
+    """Names of links or joints, and their rows in the tables of a snapshot."""
+
+    names: Tuple[str, ...]
+    rows: Dict[str, int]
+    chosen: np.ndarray
+
+    def named(self, array: np.ndarray) -> NamedRows:
+        return NamedRows(self.names, array, self.rows)
+
+
+@lru_cache(maxsize=64)
+def _layout(models: Tuple[Tuple[int, Tuple[str, ...]], ...]) -> _Layout:
+    """The layout of some models; of each its first row in the table, and its names.
+
+    Cached, because programs read the same models after each action.
+    """
+    names = tuple(name for _, scoped in models for name in scoped)
+    return _Layout(names, {name: row for row, name in enumerate(names)}, np.array(
+        [row for first, scoped in models for row in range(first, first + len(scoped))], dtype=int))
+
+
 def model_readings(entities: Sequence[Entity], snapshot: Snapshot) -> Readings:
     """Poses and twists of the models of a snapshot."""
     pose = np.empty((len(entities), POSE_WIDTH))
@@ -155,19 +182,18 @@ def model_readings(entities: Sequence[Entity], snapshot: Snapshot) -> Readings:
 
 def link_readings(entities: Sequence[Entity], snapshot: Snapshot) -> Readings:
     """Poses and twists of all links of a snapshot."""
-    names = [link for entity in entities for link in entity.scoped_links]
-    table = _link_table(snapshot)[[row for entity in entities for row in entity.link_ids]]
-    return Readings(snapshot.sim_ns * 1e-9, NamedRows(names, table[:, :POSE_WIDTH]),
-                    NamedRows(names, table[:, POSE_WIDTH:]))
+    layout = _layout(tuple((entity.first_link_row, entity.scoped_links) for entity in entities))
+    table = _link_table(snapshot)[layout.chosen]
+    return Readings(snapshot.sim_ns * 1e-9, layout.named(table[:, :POSE_WIDTH]),
+                    layout.named(table[:, POSE_WIDTH:]))
 
 
 def joint_readings(entities: Sequence[Entity], snapshot: Snapshot) -> JointReadings:
     """Positions and rates of all joint axes of a snapshot."""
-    names = [joint for entity in entities for joint in entity.scoped_joints]
-    table = np.asarray(snapshot.joints).reshape(-1, JOINT_WIDTH)
-    values = table[[row for entity in entities for row in entity.joint_rows]]
-    return JointReadings(snapshot.sim_ns * 1e-9, NamedRows(names, values[:, 0]),
-                         NamedRows(names, values[:, 1]))
+    layout = _layout(tuple((entity.first_joint_row, entity.scoped_joints) for entity in entities))
+    values = np.asarray(snapshot.joints).reshape(-1, JOINT_WIDTH)[layout.chosen]
+    return JointReadings(snapshot.sim_ns * 1e-9, layout.named(values[:, 0]),
+                         layout.named(values[:, 1]))
 
 
 def contact_reading(first: str, second: str, contact: Contact) -> ContactReading:
