@@ -130,7 +130,7 @@ class Snapshot:
 
     def link(self, row: int) -> "tuple[Pose, Twist]":
         """World pose of the link frame and twist at its origin (world axes)."""
-        return _link_at(self.links, row * LINK_WIDTH)
+        return pose_and_twist(self.links, row * LINK_WIDTH)
 
     def joint(self, row: int) -> "tuple[float, float]":
         """Position and rate of a joint axis."""
@@ -138,12 +138,10 @@ class Snapshot:
         return self.joints[base], self.joints[base + 1]
 
 
-def _link_at(values: Sequence[float], at: int) -> "tuple[Pose, Twist]":
-    n = list(values[at:at + LINK_WIDTH])
-    return (
-        Pose((n[0], n[1], n[2]), (n[3], n[4], n[5], n[6])),
-        Twist((n[7], n[8], n[9]), (n[10], n[11], n[12])),
-    )
+def pose_and_twist(values: Sequence[float], at: int = 0) -> "tuple[Pose, Twist]":
+    """Pose and twist of the link whose row begins at index `at`."""
+    x, y, z, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz = list(values[at:at + LINK_WIDTH])
+    return Pose((x, y, z), (qx, qy, qz, qw)), Twist((vx, vy, vz), (wx, wy, wz))
 
 
 class Memory:
@@ -316,7 +314,7 @@ class RingReader:
         while True:
             sequence = self._newest()
             slot = self.memory.slot(sequence)
-            found = _link_at(self.memory.doubles, slot + HEAD_WORDS + row * LINK_WIDTH)
+            found = pose_and_twist(self.memory.doubles, slot + HEAD_WORDS + row * LINK_WIDTH)
             if self._is_whole(slot, sequence):
                 return found
 

@@ -12,7 +12,7 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tu
 from ..engine.commands import Command, ReadContacts, ReadJointWrenches
 from ..engine.drive_commands import ReadEfforts
 from ..engine.rates import Rate
-from ..engine.ring import LINK_WIDTH
+from ..engine.ring import LINK_WIDTH, pose_and_twist
 from ..engine.step_records import AXIS_WIDTH, Part, RecordRule, StepRecord
 from ..geometry import Pose, Twist
 from ..simulator.states import States
@@ -253,8 +253,8 @@ class StepView:
             place = self._links.get(row)
             if place is None:
                 raise PluginError("an observation can read only links that were looked up before")
-            n = _LINK.unpack_from(part.raw, place * _LINK.size)
-            found = self._found[row] = (Pose(n[0:3], n[3:7]), Twist(n[7:10], n[10:13]))
+            found = self._found[row] = pose_and_twist(
+                _LINK.unpack_from(part.raw, place * _LINK.size))
         return found
 
     def axis_at(self, row: int) -> Tuple[float, float]:

@@ -238,7 +238,7 @@ class BulletBackend:
     def _inherited(self, command: LoadModel) -> ModelState:
         self._readout.read()
         before = self._entry(command.inherit)
-        return inherited(before, command.model, self._mover.model_pose(before),
+        return inherited(before, command.model, self._mover.present_model_pose(before),
                          self._mover.link_state, self._readout.joints)
 
     def _check_load(self, command: LoadModel) -> None:

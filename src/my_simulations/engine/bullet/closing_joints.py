@@ -4,13 +4,14 @@ They follow from the states of the connected links, as for all joints in Gazebo.
 """
 from __future__ import annotations
 
-from typing import Any, List, Sequence
+from typing import List, Sequence
 
 import numpy as np
 
 from ...description.joint_positions import has_position, joint_position
 from ...description.model import WORLD, Joint, Model
 from ...geometry import Pose, Twist, compose, dot, rotate, subtract, twist_at
+from ..ring import pose_and_twist
 from ..ring_rows import axis_rows
 
 
@@ -41,9 +42,7 @@ class ClosingJoint:
         """Update its row of the joint table from the link table."""
         poses, twists = {WORLD: Pose()}, {WORLD: Twist()}
         for name, row in self._rows.items():
-            values: Any = links[row].tolist()
-            poses[name] = Pose(tuple(values[0:3]), tuple(values[3:7]))
-            twists[name] = Twist(tuple(values[7:10]), tuple(values[10:13]))
+            poses[name], twists[name] = pose_and_twist(links[row].tolist())
         position = joint_position(self._joint, self._at_zero, poses)
         joints[self.row, 0] = 0.0 if position is None else position
         joints[self.row, 1] = self._rate(poses[self._joint.parent], twists[self._joint.parent],

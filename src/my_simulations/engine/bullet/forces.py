@@ -10,9 +10,7 @@ import pybullet
 
 from ...geometry import (
     ZERO3,
-    Pose,
     Quat,
-    Twist,
     Vec3,
     add,
     conjugate,
@@ -21,6 +19,7 @@ from ...geometry import (
     rotate,
     scale,
 )
+from ..ring import pose_and_twist
 from ..run_state import DamperMemory, LoopMemory
 from ..timed_forces import TimedEffort, TimedForce, TimedWrench
 from ..wrench_laws import AT_REST, WrenchLaw
@@ -326,12 +325,12 @@ class Forces(StepHelper):
 
     def _wrench_of_law(self, wrench: TimedWrench, law: WrenchLaw, com: Vec3) -> Tuple[Vec3, Vec3]:
         """Return force and torque for the state of the link; zero if they are not finite."""
-        n = ROW.unpack(self._read_links((wrench.row,)))
+        pose, twist = pose_and_twist(ROW.unpack(self._read_links((wrench.row,))))
         joint = AT_REST
         if wrench.axis_row >= 0:
             position, rate = self._read_axes((wrench.axis_row,))
             joint = position, rate
-        force, torque = law.wrench(Pose(n[0:3], n[3:7]), Twist(n[7:10], n[10:13]), com, joint)
+        force, torque = law.wrench(pose, twist, com, joint)
         found = (force, torque) if is_finite(*force, *torque) else (ZERO3, ZERO3)
         self._by_law[wrench.force_id] = found
         return found

@@ -6,7 +6,7 @@ pose of the link. PyBullet stores joint positions instead, so they are set toget
 from __future__ import annotations
 
 import math
-from typing import Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Callable, Dict, List, Optional, Tuple
 
 import pybullet
 
@@ -30,6 +30,7 @@ from ...geometry import (
 from ..api import CommandRefusedError, RemovedError
 from ..body_plan import BASE
 from ..commands import Frame, LinkState, SetJoints, SetLinkState, SetModelState
+from ..ring import pose_and_twist
 from . import bodies
 from .bodies import Axis, Body, Part, set_axis_state
 from .body_events import BodyEvent
@@ -66,16 +67,15 @@ class StateSetter:
 
     def link_state(self, row: int) -> LinkState:
         """Return the state of the link at a row, as of the last read-out."""
-        return _link_state(self._readout.links[row].tolist())
-
-    def model_pose(self, entry: Entry) -> Pose:
-        """Return the pose of a model frame as of the last read-out."""
-        return _model_pose(entry, lambda row: self.link_state(row).pose)
+        return LinkState(*pose_and_twist(self._readout.links[row].tolist()))
 
     def present_model_pose(self, entry: Entry) -> Pose:
         """Return the present pose of a model frame."""
-        return _model_pose(entry, lambda row: _link_state(
-            ROW.unpack(self._row_reader.read_links((row,)))).pose)
+        if not entry.model.links:
+            return entry.pose
+        lead = _canonical(entry)
+        values = ROW.unpack(self._row_reader.read_links((entry.first_row + lead,)))
+        return compose(pose_and_twist(values)[0], inverse(entry.model.links[lead].pose))
 
     def set_model(self, command: SetModelState, entry: Entry) -> None:
         """Set the pose and twist of a model. Raises CommandRefusedError."""
@@ -180,22 +180,6 @@ class StateSetter:
         if body.moves and body.base is not None:
             bodies.set_base_twist(body, target, _carried(lead, target, wanted.position, twist))
         self._notify(BodyEvent.STATE_SET, body)
-
-
-def _link_state(values: Sequence[float]) -> LinkState:
-    """Return the state in a row of the link table."""
-    return LinkState(Pose((values[0], values[1], values[2]),
-                          (values[3], values[4], values[5], values[6])),
-                     Twist((values[7], values[8], values[9]),
-                           (values[10], values[11], values[12])))
-
-
-def _model_pose(entry: Entry, link_pose: Callable[[int], Pose]) -> Pose:
-    """Return the pose of a model frame; `link_pose` returns that of a link row."""
-    if not entry.model.links:
-        return entry.pose
-    lead = _canonical(entry)
-    return compose(link_pose(entry.first_row + lead), inverse(entry.model.links[lead].pose))
 
 
 def _canonical(entry: Entry) -> int:
