@@ -11,7 +11,7 @@ from typing import Dict, List, Optional, Set, Tuple, Union
 
 import pybullet
 
-from ...description.model import Link
+from ...description.model import JointAxis, Link, Model
 from ...description.shapes import Surface
 from ...geometry import (
     IDENTITY,
@@ -267,6 +267,12 @@ def set_pose(body: Body, link_pose: Pose) -> None:
     for uid, (recipe, _) in zip(body.more, body.shapes[1:]):
         stand = piece_pose(at, recipe)
         pybullet.resetBasePositionAndOrientation(uid, stand.position, stand.orientation)
+
+
+def specs_of(body: Body, model: Model) -> List[Tuple[Axis, JointAxis]]:
+    """Return the axes of a body of `model`, each with its description."""
+    specs = {joint.name: (joint.axis, joint.axis2) for joint in model.joints}
+    return [(axis, specs[axis.name][axis.number] or JointAxis()) for axis in body.axes]
 
 
 def set_axis_state(body: Body, axis: Axis, position: float, rate: float = 0.0) -> None:

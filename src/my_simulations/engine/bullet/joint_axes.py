@@ -1,14 +1,15 @@
-"""Apply limits, friction, damping and springs of the description to joint axes."""
+"""Apply limits, damping and springs of the description to joint axes."""
 from __future__ import annotations
 
 import math
-from typing import Dict, List, Optional, Protocol, Tuple
+from typing import Dict, List, Tuple
 
 import numpy as np
 import pybullet
 
 from ...description.model import INFINITE, JointAxis, Model
-from .bodies import Axis, Body
+from .bodies import Axis, Body, specs_of
+from .forces import Forces
 from .implicit_axes import ImplicitAxes, mobility
 from .mass_matrix import MassMatrix
 
@@ -17,37 +18,14 @@ _EXPLICIT_DAMPING = 0.01   # d dt / I up to which PyBullet's explicit damping is
 _WHEEL_DAMPING = 0.04      # the same for wheels, for which `_wheel_dampers` computes exact values
 
 
-class AxisEfforts(Protocol):
-    """Receives the limits of axes, and the springs and dampers to integrate implicitly.
-
-    `Forces` has these methods; its module imports this one.
-    """
-
-    def set_limits(self, row: int, effort: float, rate: float) -> None:
-        """Limit the effort, N or N m, and the rate, m/s or rad/s, of an axis; below 0 for none."""
-
-    def set_implicit(self, body: Body, axes: Optional[ImplicitAxes]) -> None:
-        """Set the springs and dampers of a body; None removes them."""
-
-
-def specs_of(body: Body, model: Model) -> List[Tuple[Axis, JointAxis]]:
-    """Return the axes of a body of `model`, each with its description."""
-    specs = {joint.name: (joint.axis, joint.axis2) for joint in model.joints}
-    return [(axis, specs[axis.name][axis.number] or JointAxis()) for axis in body.axes]
-
-
-def set_up(body: Body, model: Model, forces: AxisEfforts, dt: float) -> None:
-    """Apply limits, friction, damping and springs of the description to the axes of a body."""
+def set_up(body: Body, model: Model, forces: Forces, dt: float) -> None:
+    """Apply limits, damping and springs of the description to the axes of a body."""
     mass = sum(part.mass for part in body.parts)
     _disable_motors(body)
     found = specs_of(body, model)
     implicit: List[Tuple[Axis, JointAxis]] = []
     wheels = _wheel_dampers(body, found, dt)
     for axis, spec in found:
-        # createMultiBody leaves a velocity motor on every axis; as a brake it is the friction.
-        pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.VELOCITY_CONTROL,
-                                       targetVelocity=spec.motor_rate,
-                                       force=max(0.0, spec.friction))
         _set_limits(body, axis, spec, mass)
         forces.set_limits(axis.row, spec.effort, spec.velocity)
         explicit = _is_explicit(spec, axis, dt, _EXPLICIT_DAMPING)

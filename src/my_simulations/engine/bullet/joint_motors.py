@@ -8,9 +8,8 @@ import pybullet
 from ...description.model import JointAxis, Model
 from ..api import CommandRefusedError
 from ..drive_commands import JointMotor
-from .bodies import Axis, Body
+from .bodies import Axis, Body, specs_of
 from .body_events import BodyObserver
-from .joint_axes import specs_of
 
 
 class JointMotors(BodyObserver):
@@ -29,9 +28,8 @@ class JointMotors(BodyObserver):
         self._notify = notify
         self._motors: Dict[int, JointMotor] = {}
         self._specs: Dict[int, JointAxis] = {}
-        # Rates other than 0 and efforts of motors, as set in PyBullet.
-        self._driven: Dict[int, Tuple[float, float]] = {}
-        self._efforts: Dict[int, float] = {}
+        # Rates and largest efforts of motors and friction, as set in PyBullet.
+        self._targets: Dict[int, Tuple[float, float]] = {}
         self._loop_rows: Set[int] = set()
 
     def disable_for_loops(self, rows: Set[int]) -> None:
@@ -44,18 +42,20 @@ class JointMotors(BodyObserver):
 
     def rate_of(self, row: int) -> float:
         """Return the rate to which a motor drives an axis, rad/s or m/s; 0 without a motor."""
-        return self._driven.get(row, (0.0, 0.0))[0]
+        rate, effort = self._targets.get(row, (0.0, 0.0))
+        return rate if effort > 0.0 else 0.0
 
     def effort_of(self, row: int) -> float:
         """Return the largest effort of the motor, or of the friction, of an axis, N m or N."""
-        return self._efforts.get(row, 0.0)
+        return self._targets.get(row, (0.0, 0.0))[1]
 
     def motor_of(self, row: int) -> Optional[Tuple[float, float]]:
         """Return the rate to which a motor drives an axis, rad/s or m/s, and its largest effort.
 
         None without a motor, or for a rate of 0. The effort is in N m or N.
         """
-        return self._driven.get(row)
+        found = self._targets.get(row)
+        return None if found is None or not found[0] or found[1] <= 0.0 else found
 
     def set(self, motors: Iterable[JointMotor]) -> None:
         """Set some motors; others stay. Raises CommandRefusedError before any motor is set."""
@@ -74,30 +74,28 @@ class JointMotors(BodyObserver):
             self._notify(body)
 
     def set_up(self, body: Body, model: Model) -> None:
-        """Apply motors, or friction, to axes whose limits and friction were set (again)."""
-        for axis, spec in specs_of(body, model):
-            self._specs[axis.row] = spec
-            if axis.row in self._motors:
-                self.restore(body, [axis])
-            else:
-                self._store_target(axis.row, spec.motor_rate, spec.friction)
+        """Apply motors, or the friction of a model, to the axes of a body."""
+        self._specs.update((axis.row, spec) for axis, spec in specs_of(body, model))
+        if body.axes:
+            self.restore(body, body.axes)
 
     def forget(self, body: Body) -> None:
         for axis in body.axes:
             self._motors.pop(axis.row, None)
             self._specs.pop(axis.row, None)
-            self._driven.pop(axis.row, None)
-            self._efforts.pop(axis.row, None)
+            self._targets.pop(axis.row, None)
 
     def restore(self, body: Body, axes: Sequence[Axis]) -> None:
-        """Enable the motors of axes of a body, or their friction where there is no motor."""
+        """Enable the motors of axes of a body, or their friction if there is no motor.
+
+        createMultiBody leaves a velocity motor on every axis; as a brake it is the friction.
+        """
         targets = [self._target_of(axis.row) for axis in axes]
         pybullet.setJointMotorControlArray(
             body.uid, [axis.index for axis in axes], pybullet.VELOCITY_CONTROL,
             targetVelocities=[rate for rate, _ in targets],
             forces=[effort for _, effort in targets])
-        for axis, target in zip(axes, targets):
-            self._store_target(axis.row, *target)
+        self._targets.update((axis.row, target) for axis, target in zip(axes, targets))
 
     def _target_of(self, row: int) -> Tuple[float, float]:
         """Return the rate of the motor or friction of an axis, rad/s or m/s, and its effort."""
@@ -106,9 +104,3 @@ class JointMotors(BodyObserver):
             return motor.rate, motor.effort
         spec = self._specs.get(row) or JointAxis()
         return spec.motor_rate, max(0.0, spec.friction)
-
-    def _store_target(self, row: int, rate: float, effort: float) -> None:
-        self._efforts[row] = effort
-        self._driven.pop(row, None)
-        if rate and effort > 0.0:
-            self._driven[row] = rate, effort

@@ -11,8 +11,7 @@ from ..api import CommandRefusedError
 from ..drive_commands import JointServo
 from ..run_state import ServoMemory
 from ..servo_law import FOLLOW, Advance, ServoLaw
-from .bodies import Axis, Body
-from .joint_axes import specs_of
+from .bodies import Axis, Body, specs_of
 
 _UNLIMITED_EFFORT = 1e7   # N or N m: the limit of a motor without one
 _UNLIMITED_RATE = 1e5     # rad/s or m/s: the same for its rate
