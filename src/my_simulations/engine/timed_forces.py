@@ -2,11 +2,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Optional, Tuple, TypeVar, Union
+from typing import Optional, Tuple, TypeVar
 
 from ..geometry import Vec3
 from .commands import FOREVER, Command
 from .wrench_laws import WrenchLaw
+
+_Timed = TypeVar("_Timed", bound="TimedForce")
 
 
 @dataclass(frozen=True)
@@ -27,15 +29,36 @@ class JointPid:
 
 
 @dataclass(frozen=True)
-class TimedWrench:
-    """A wrench on a link, exact to the step.
+class TimedForce:
+    """A wrench on a link or an effort on a joint axis, exact to the step.
 
     Acts in steps `start` (the first step whose beginning is at this count) to `stop` - 1.
 
     Attributes:
         force_id: id, to clear it.
-        row: link row.
+        row: link row or joint row.
         start, stop: step counts; `stop` FOREVER for until cleared.
+    """
+
+    force_id: int
+    row: int
+    start: int
+    stop: int
+
+    def begun(self: _Timed, step: int) -> _Timed:
+        """Return the same with its full duration from `step` on, if its start has passed."""
+        late = step - self.start
+        if late <= 0:
+            return self
+        return replace(self, start=step, stop=FOREVER if self.stop == FOREVER
+                       else self.stop + late)
+
+
+@dataclass(frozen=True)
+class TimedWrench(TimedForce):
+    """A wrench on a link.
+
+    Attributes:
         force, torque: N and N m, world axes, at the centre of mass.
         in_link_axes: force, torque and point are in link axes and turn with the link.
         point: m, from the centre of mass to where the force is applied, same axes as the force.
@@ -43,10 +66,6 @@ class TimedWrench:
         axis_row: joint row that the law follows; -1 for none.
     """
 
-    force_id: int
-    row: int
-    start: int
-    stop: int
     force: Vec3 = (0.0, 0.0, 0.0)
     torque: Vec3 = (0.0, 0.0, 0.0)
     in_link_axes: bool = False
@@ -54,37 +73,18 @@ class TimedWrench:
     law: Optional[WrenchLaw] = None
     axis_row: int = -1
 
-    def begun(self, step: int) -> "TimedWrench":
-        """The same with its full duration from `step` on, if its start has passed."""
-        return _begun(self, step)
-
 
 @dataclass(frozen=True)
-class TimedEffort:
-    """An effort on a joint axis, exact to the step.
+class TimedEffort(TimedForce):
+    """An effort on a joint axis.
 
     Attributes:
-        force_id: id, to clear it.
-        row: joint row.
-        start, stop: as of `TimedWrench`.
         effort: N m or N; ignored with `pid`.
         pid: computes the effort in every step.
     """
 
-    force_id: int
-    row: int
-    start: int
-    stop: int
     effort: float = 0.0
     pid: Optional[JointPid] = None
-
-    def begun(self, step: int) -> "TimedEffort":
-        """The same with its full duration from `step` on, if its start has passed."""
-        return _begun(self, step)
-
-
-TimedForce = Union[TimedWrench, TimedEffort]
-_Timed = TypeVar("_Timed", TimedWrench, TimedEffort)
 
 
 @dataclass(frozen=True)
@@ -103,10 +103,3 @@ class ClearTimedForces(Command):
     """Clear timed wrenches and efforts by id; ids that have expired are ignored."""
 
     force_ids: Tuple[int, ...]
-
-
-def _begun(force: _Timed, step: int) -> _Timed:
-    late = step - force.start
-    if late <= 0:
-        return force
-    return replace(force, start=step, stop=FOREVER if force.stop == FOREVER else force.stop + late)
