@@ -329,17 +329,13 @@ class BulletBackend:
             place = helpers.restored_sleep.rest_pose_of(body)
             if place is not None:
                 resting[body.lead_row] = place
-        return RunState(
-            tuple(resting.items()),
-            helpers.forces.servos.memories(), helpers.forces.loop_memories(),
-            helpers.forces.damper_memories(), helpers.settling.parting_end,
-            tuple(body.lead_row for body in helpers.divergence.stopped))
+        return replace(helpers.forces.run_state(), resting=tuple(resting.items()),
+                       parting_end=helpers.settling.parting_end,
+                       stopped=tuple(body.lead_row for body in helpers.divergence.stopped))
 
     def _set_run_state(self, command: SetRunState) -> None:
-        state, forces = command.state, self._helpers.forces
-        forces.servos.resume(state.servos)
-        forces.resume_loops(state.loops)
-        forces.resume_dampers(state.dampers)
+        state = command.state
+        self._helpers.forces.resume(state)
         self._helpers.settling.resume_parting(state.parting_end)
         self._helpers.divergence.stop(self._rows[row][0] for row in state.stopped)
         self._helpers.restored_sleep.put(

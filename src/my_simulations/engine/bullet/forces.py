@@ -20,7 +20,7 @@ from ...geometry import (
     scale,
 )
 from ..ring import pose_and_twist
-from ..run_state import DamperMemory, LoopMemory
+from ..run_state import LoopMemory, RunState
 from ..timed_forces import TimedEffort, TimedForce, TimedWrench
 from ..wrench_laws import AT_REST, WrenchLaw
 from .bodies import Axis, Body, Part, set_sleep
@@ -70,7 +70,6 @@ class Forces(StepHelper):
         self._axes: Dict[int, Tuple[Body, Axis]] = {}
         self._weightless: Dict[int, Tuple[Body, Part]] = {}
         self._implicit: Dict[int, ImplicitAxes] = {}
-        self._resting: Dict[int, ImplicitAxes] = {}   # dampers of bodies that are fixed at rest
         self._limits: Dict[int, Tuple[float, float]] = {}
         self._efforts: Tuple[int, Dict[int, float]] = -1, {}   # step count, efforts by axis row
         self.servos = JointServos(self._axes, wake, release)
@@ -91,35 +90,21 @@ class Forces(StepHelper):
 
     def set_implicit(self, body: Body, axes: Optional[ImplicitAxes]) -> None:
         """Set the springs and dampers of the axes of a body; None removes them."""
-        for table in (self._implicit, self._resting):
-            table.pop(body.uid, None)
+        self._implicit.pop(body.uid, None)
         if axes is not None:
             self._implicit[body.uid] = axes
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Reset servos and dampers after joints were set; omit dampers of a body fixed at rest."""
-        if event is BodyEvent.FIXED_AT_REST:
-            # A servo can move the body at any time.
-            if not self.servos.drives(body):
-                self._move_dampers(body, self._implicit, self._resting)
-        elif event is BodyEvent.RELEASED:
-            self._move_dampers(body, self._resting, self._implicit)
-        elif event is BodyEvent.MOTOR_TARGET_CHANGED:
-            if body.uid in self._implicit:
-                self._implicit[body.uid].is_cancelled = False
-        else:
-            if body.uid in self._implicit:
-                self._implicit[body.uid].reset_after_jump()
+        axes = self._implicit.get(body.uid)
+        if event in (BodyEvent.STATE_SET, BodyEvent.STATE_REPAIRED):
             self.servos.reset_after_jump(body)
-
-    @staticmethod
-    def _move_dampers(body: Body, source: Dict[int, ImplicitAxes],
-                      target: Dict[int, ImplicitAxes]) -> None:
-        """Move the dampers of a body to another table, unless it has springs."""
-        axes = source.get(body.uid)
-        if axes is not None and not axes.has_springs:
-            axes.reset_after_jump()
-            target[body.uid] = source.pop(body.uid)
+            if axes is not None:
+                axes.reset_after_jump()
+        elif axes is not None and event is BodyEvent.MOTOR_TARGET_CHANGED:
+            axes.is_cancelled = False
+        elif axes is not None:   # a servo can move the body at any time
+            axes.pause(event is BodyEvent.FIXED_AT_REST and not self.servos.drives(body))
 
     def forget(self, body: Body) -> None:
         """Discard a removed body and the timed forces on it."""
@@ -164,22 +149,18 @@ class Forces(StepHelper):
         self.servos.disable_for_loops(rows)
         self._loops_changed(rows)
 
-    def loop_memories(self) -> Tuple[Tuple[int, LoopMemory], ...]:
-        """The states of the PID loops by force id, for `resume_loops`."""
-        return tuple((number, loop.memory) for number, loop in self._loops.items())
+    def run_state(self) -> RunState:
+        """Return the states of servos, PID loops, springs and dampers, for `resume`."""
+        return RunState(
+            servos=self.servos.memories(),
+            loops=tuple((number, loop.memory) for number, loop in self._loops.items()),
+            dampers=tuple((axes.first_row, axes.memory) for axes in self._implicit.values()))
 
-    def resume_loops(self, memories: Sequence[Tuple[int, LoopMemory]]) -> None:
-        """Resume PID loops that start from now on with these states, by force id."""
-        self._resumed = dict(memories)
-
-    def damper_memories(self) -> Tuple[Tuple[int, DamperMemory], ...]:
-        """The states of springs and dampers, by the first joint row of a body."""
-        return tuple((axes.first_row, axes.memory)
-                     for table in (self._implicit, self._resting) for axes in table.values())
-
-    def resume_dampers(self, memories: Sequence[Tuple[int, DamperMemory]]) -> None:
-        """Resume springs and dampers with saved states, by the first joint row of a body."""
-        for row, memory in memories:
+    def resume(self, state: RunState) -> None:
+        """Continue from saved states; PID loops resume theirs when they start."""
+        self.servos.resume(state.servos)
+        self._resumed = dict(state.loops)
+        for row, memory in state.dampers:
             self._implicit[self._axes[row][0].uid].resume(memory)
 
     @property
@@ -221,7 +202,7 @@ class Forces(StepHelper):
             for force in self._acting.values():
                 if isinstance(force, TimedWrench):
                     self._apply_wrench(force, dt)
-                else:
+                elif isinstance(force, TimedEffort):
                     efforts[force.row] = efforts.get(force.row, 0.0) + self._limited(force, dt)
         if not self.servos.idle:
             self.servos.act(efforts, {self._axes[row][0].uid for row in efforts}

@@ -33,7 +33,7 @@ from ...description.model import JointAxis
 from ..run_state import DamperMemory
 from .bodies import Axis, Body
 from .mass_matrix import MassMatrix
-from .step_helper import next_multiple
+from .step_helper import FAR, next_multiple
 
 _NEWEST_WEIGHT = 0.5  # weight of the newest estimate of the acceleration by other forces
 _MOST_MOTION = 0.05   # rad or m of an axis until the mobility is computed again
@@ -79,7 +79,6 @@ class ImplicitAxes:
     """The springs and dampers of some axes of one body.
 
     Attributes:
-        has_springs: whether any axis has a spring.
         is_cancelled: whether motors cancelled all dampers at the last check; a new target of a
             motor sets it to False.
     """
@@ -92,7 +91,8 @@ class ImplicitAxes:
         self._damping = np.array([spec.damping for spec in specs])
         self._stiffness = np.array([spec.spring_stiffness for spec in specs])
         self._reference = np.array([spec.spring_reference for spec in specs])
-        self.has_springs = bool(self._stiffness.any())
+        self._has_springs = bool(self._stiffness.any())
+        self._is_paused = False
         self._smoothing = 1.0 - _NEWEST_WEIGHT, _NEWEST_WEIGHT / dt, _NEWEST_WEIGHT
         self._mass_matrix: Optional[MassMatrix] = None
         self._mobility = np.eye(len(self._rows))
@@ -112,6 +112,16 @@ class ImplicitAxes:
         self.is_cancelled = False
         self._motors: List[Motor] = []
         self._bounds: List[_Bounds] = []            # for these motors
+
+    def pause(self, is_at_rest: bool) -> None:
+        """Omit the dampers of a body from now on that is fixed at rest, or (False) use them again.
+
+        Springs are not omitted.
+        """
+        is_paused = is_at_rest and not self._has_springs
+        if is_paused != self._is_paused:
+            self._is_paused = is_paused
+            self.reset_after_jump()
 
     @property
     def first_row(self) -> int:
@@ -135,6 +145,8 @@ class ImplicitAxes:
 
     def due(self, step: int) -> int:
         """Return the first step, `step` or later, in which `add_to` must be called."""
+        if self._is_paused:
+            return FAR
         return next_multiple(step, _CHECK_EVERY) if self.is_cancelled else step
 
     def add_to(self, efforts: Dict[int, float], motor_of: Callable[[int], Motor]) -> None:
