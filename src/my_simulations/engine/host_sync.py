@@ -4,6 +4,7 @@ from __future__ import annotations
 import time
 from typing import Callable
 
+from .api import Backend
 from .commands import (
     Clear,
     Command,
@@ -15,7 +16,7 @@ from .commands import (
 )
 from .memory_fence import fence
 from .ring import SETTINGS, STEP_BUDGET, WAITS_AT, WAITS_FOR_ROOM, Clock, RingWriter
-from .step_records import RecordSource, RecordWriter, SetRecordRules
+from .step_records import RecordWriter, SetRecordRules
 
 _NOTIFY_S = 0.002   # between two notifications about records
 _CHANGE_SETTINGS = (LoadModel, RemoveModel, Restart, Clear)
@@ -33,7 +34,7 @@ class HostSync:
         notify: wakes the host.
     """
 
-    def __init__(self, writer: RingWriter, source: RecordSource,
+    def __init__(self, writer: RingWriter, source: Backend,
                  notify: Callable[[], None]) -> None:
         self._writer, self._words, self._notify = writer, writer.words, notify
         self.records = RecordWriter(writer.memory, source)

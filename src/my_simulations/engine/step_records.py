@@ -16,8 +16,9 @@ import array
 import collections
 import pickle
 from dataclasses import dataclass
-from typing import Any, Counter, Dict, Iterator, List, Optional, Protocol, Tuple
+from typing import Any, Counter, Dict, Iterator, List, Optional, Tuple
 
+from .api import Backend
 from .commands import Command, SetJoints
 from .memory_fence import keep_order
 from .rates import Rate
@@ -77,22 +78,6 @@ class SetRecordRules(Command):
     rules: Tuple[RecordRule, ...]
 
 
-class RecordSource(Protocol):
-    """Reads the world for records; a part of `api.Backend`."""
-
-    def apply(self, command: Command) -> object:
-        """Carry out a query."""
-
-    def read_rows(self, link_rows: Tuple[int, ...]) -> bytes:
-        """The current states of some links as raw doubles."""
-
-    def read_axes(self, joint_rows: Tuple[int, ...]) -> List[float]:
-        """Position and rate of some joint axes, one after the other."""
-
-    def read_world(self) -> memoryview:
-        """The current states of all links as raw doubles."""
-
-
 class RecordWriter:
     """The engine's side.
 
@@ -101,7 +86,7 @@ class RecordWriter:
         is_urgent: whether the reader is to be notified soon.
     """
 
-    def __init__(self, memory: Memory, source: RecordSource) -> None:
+    def __init__(self, memory: Memory, source: Backend) -> None:
         self._words = memory.words
         self._buffer, self._source = memory.buffer, source
         self._rules: List[Tuple[int, RecordRule]] = []   # with the step at which each is due
