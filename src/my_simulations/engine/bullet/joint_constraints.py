@@ -19,6 +19,7 @@ from ...geometry import IDENTITY, Pose, Vec3, compose, inverse, rotate, scale, t
 from ..api import CommandRefusedError, RemovedError
 from ..body_plan import BASE, NO_LINK, TIE_TYPES, BodyPlan
 from ..commands import ConnectModels
+from . import collision_groups
 from .bodies import Axis, Body, Part, set_sleep
 from .body_events import BodyObserver
 
@@ -240,7 +241,7 @@ class _Tie:
         for (body, part), (other, its) in [self.ends] if len(self.ends) == 2 else []:
             for uid in body.uids:
                 for near in other.uids:
-                    pybullet.setCollisionFilterPair(uid, near, part.index, its.index, int(collide))
+                    collision_groups.ignore(uid, near, part.index, its.index, not collide)
 
 
 class InterModelJoints(BodyObserver):

@@ -14,7 +14,7 @@ from typing import Any, Callable, Dict, FrozenSet, List, Mapping, NamedTuple, Se
 import numpy as np
 import pybullet
 
-from ...geometry import Vec3
+from ...geometry import STILL, Vec3
 from . import surface_coefficients
 from .agenda import Agenda
 from .bodies import Body
@@ -39,7 +39,6 @@ _WARNING_LOAD = 0.1         # share of the largest load: contacts below it cause
 _FRICTION_TOLERANCE = 0.03  # tolerated relative error
 _LEAST_COEFFICIENT = 1e-6   # the logarithm of 0 is not finite
 _NO_PAIRS: FrozenSet[_Pair] = frozenset()
-_NO_VELOCITY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 _MOVING_PAIR_WEIGHT = 0.05  # weight of a pair of moving surfaces; of one with a static surface: 1
 _MOST_KINDS = 60  # with more, pairs of moving surfaces are ignored
@@ -143,7 +142,7 @@ class FrictionBalance(StepHelper):
         """Read the contacts of the surfaces that are due. Returns whether a pair has changed."""
         changed = False
         for node in self._agenda.take(step):
-            if node[0] in self._rigid and pybullet.getBaseVelocity(node[0]) == _NO_VELOCITY:
+            if node[0] in self._rigid and pybullet.getBaseVelocity(node[0]) == STILL:
                 checks = _WAIT_AT_REST
             elif self._read_surface(node):
                 changed, checks = True, 1

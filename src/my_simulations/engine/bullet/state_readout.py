@@ -13,7 +13,7 @@ from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple
 import numpy as np
 import pybullet
 
-from ...geometry import IDENTITY, Pose, inverse
+from ...geometry import IDENTITY, STILL, Pose, Vec3, inverse
 from ..body_plan import BASE
 from ..ring import JOINT_WIDTH, JOINTS, LINK_WIDTH, LINKS
 from .bodies import FASTEST_RATE, Body
@@ -21,16 +21,15 @@ from .body_events import ACTUATED, COMMANDED, BodyEvent, BodyObserver
 from .closing_joints import ClosingJoint
 from .link_rows import ROW, link_row, place_row
 from .link_states import motion, motions
+from .wake_up import bodies_in, find_overlapping
 
 _PLACE = struct.Struct("=7d")
 _AXIS = struct.Struct("=2d")
 _ROW_BYTES = ROW.size
-_NO_VELOCITY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 _pose_of = pybullet.getBasePositionAndOrientation
 _velocity_of = pybullet.getBaseVelocity
 _MARGIN = 0.05     # m: motion of a body until its neighbours are searched again
 _READ_ANYWAY = 8   # resting bodies read in each read-out, even without a neighbour
-_WORLD_SIZE = 1e9  # m: a larger box is that of an infinite shape, as a plane
 
 
 class StateReadout(BodyObserver):
@@ -59,7 +58,7 @@ class StateReadout(BodyObserver):
         self._awake: Dict[int, Body] = {}
         self._trees: Dict[int, Body] = {}
         self._resting: Dict[int, Body] = {}
-        self._neighbours: Dict[int, Tuple[Tuple[float, float, float], Set[int]]] = {}
+        self._neighbours: Dict[int, Tuple[Vec3, Set[int]]] = {}
         self._offsets: Dict[int, Pose] = {}
         self._unread: List[int] = []
         self._moved: Dict[int, Body] = {}
@@ -225,7 +224,7 @@ class StateReadout(BodyObserver):
                 else:
                     pack(table, row * _ROW_BYTES,
                          *link_row(position, turn, linear, angular, offset))
-                if (vz == 0.0 and (linear, angular) == _NO_VELOCITY
+                if (vz == 0.0 and (linear, angular) == STILL
                         and body.last_position == position):
                     self._count_still(body)
                     continue
@@ -244,19 +243,16 @@ class StateReadout(BodyObserver):
             if body.moves:
                 self._resting[body.uid] = body
 
-    def _woken_by(self, uid: int, at: Tuple[float, float, float], radius: float) -> List[Body]:
+    def _woken_by(self, uid: int, at: Vec3, radius: float) -> List[Body]:
         """Mark resting bodies near a moving one as awake if they move. Returns these."""
         neighbours = self._neighbours.get(uid)
         if neighbours is None or max(abs(at[0] - neighbours[0][0]), abs(at[1] - neighbours[0][1]),
                                      abs(at[2] - neighbours[0][2])) > _MARGIN:
             reach = radius + _MARGIN + 0.02
-            neighbours = (at, self._near([c - reach for c in at], [c + reach for c in at]))
+            neighbours = (at, set(bodies_in([c - reach for c in at], [c + reach for c in at],
+                                            self._resting.__contains__)))
             self._neighbours[uid] = neighbours
         return self._wake_moving(neighbours[1])
-
-    def _near(self, low: List[float], high: List[float]) -> Set[int]:
-        found = pybullet.getOverlappingObjects(low, high) or ()
-        return {uid for uid, _ in found if uid in self._resting}
 
     def _wake_moving(self, candidates: Set[int]) -> List[Body]:
         woken = []
@@ -264,7 +260,7 @@ class StateReadout(BodyObserver):
             body = self._resting.get(uid)
             if body is None:
                 candidates.discard(uid)
-            elif _velocity_of(uid) != _NO_VELOCITY:
+            elif _velocity_of(uid) != STILL:
                 self._resting.pop(uid)
                 body.still_readouts = 0
                 self._awake[uid] = body
@@ -274,12 +270,8 @@ class StateReadout(BodyObserver):
     def _read_woken(self) -> None:
         """Read bodies that trees may have woken, and a few resting bodies in any case."""
         woken: List[Body] = []
-        for uid, tree in self._trees.items():
-            for index in [BASE] + [part.index for part in tree.colliders if part.index != BASE]:
-                low, high = pybullet.getAABB(uid, index)
-                if high[0] - low[0] < _WORLD_SIZE:
-                    woken += self._wake_moving(self._near(
-                        [c - 0.02 for c in low], [c + 0.02 for c in high]))
+        for tree in self._trees.values():
+            woken += self._wake_moving(set(find_overlapping(tree, self._resting.__contains__)))
         if not self._unread:
             self._unread = list(self._resting)
         turn, self._unread = set(self._unread[:_READ_ANYWAY]), self._unread[_READ_ANYWAY:]

@@ -6,7 +6,7 @@ command and its contact island are woken first.
 """
 from __future__ import annotations
 
-from typing import Callable, Dict, Iterable, List, Set, Tuple
+from typing import Callable, Dict, Iterable, List, Sequence, Set, Tuple
 
 import pybullet
 
@@ -17,9 +17,6 @@ from .bodies import Body
 
 _REACH = 0.02  # m: Bullet makes contacts slightly before surfaces touch
 _WORLD_SIZE = 1e9  # m: a larger box is that of an infinite shape, as a plane
-
-_AxisAlignedBox = Tuple[Vec3, Vec3]
-"""The least and the largest corner, m, world frame."""
 
 
 class WakeUp:
@@ -58,23 +55,29 @@ class WakeUp:
 
     def _moving_near(self, body: Body, seen: Set[int]) -> List[Body]:
         """Return the moving bodies, except those in `seen`, that overlap a link of a body."""
-        boxes = _link_boxes(body)
-        # One query for all links is enough if only static bodies are near.
-        if len(boxes) > 1 and not self._moving_in(hull(boxes), seen):
-            return []
-        return list({near.uid: near for box in boxes for near in self._moving_in(box, seen)}
-                    .values())
-
-    def _moving_in(self, box: _AxisAlignedBox, seen: Set[int]) -> List[Body]:
-        found = {uid: self._bodies.get(uid)
-                 for uid, _ in pybullet.getOverlappingObjects(*box) or ()}
-        return [body for body in found.values()
-                if body is not None and body.moves and body.uid not in seen]
+        bodies = self._bodies
+        return [bodies[uid] for uid in find_overlapping(
+            body, lambda uid: uid in bodies and bodies[uid].moves and uid not in seen)]
 
 
-def _link_boxes(body: Body) -> List[_AxisAlignedBox]:
-    """Return the bounding boxes of the links of a body, enlarged by `_REACH`."""
-    found: List[_AxisAlignedBox] = []
+def find_overlapping(body: Body, is_wanted: Callable[[int], bool]) -> List[int]:
+    """Return those of the wanted bodies, by PyBullet's number, that overlap a link of a body."""
+    boxes = _link_boxes(body)
+    # One query for all links is enough if only static bodies are near.
+    if len(boxes) > 1 and not bodies_in(*hull(boxes), is_wanted):
+        return []
+    return list(dict.fromkeys(uid for box in boxes for uid in bodies_in(*box, is_wanted)))
+
+
+def bodies_in(low: Sequence[float], high: Sequence[float],
+              is_wanted: Callable[[int], bool]) -> List[int]:
+    """Return those of the wanted bodies that overlap an axis-aligned box; m, world frame."""
+    return [uid for uid, _ in pybullet.getOverlappingObjects(low, high) or () if is_wanted(uid)]
+
+
+def _link_boxes(body: Body) -> List[Tuple[Vec3, Vec3]]:
+    """Return the bounding boxes of the links of a body, enlarged by `_REACH`: low, high, m."""
+    found: List[Tuple[Vec3, Vec3]] = []
     for uid in body.uids:
         for index in sorted({BASE, *(part.index for part in body.colliders)}):
             low, high = pybullet.getAABB(uid, index)
