@@ -7,8 +7,8 @@ from typing import Optional, Tuple
 from ..geometry import Pose
 from .commands import Command
 
-PARTING_NOT_BEGUN = -1
-"""For `RunState.parting_end`: no step was made since models were loaded."""
+SPLIT_IMPULSES_NOT_BEGUN = -1
+"""For `RunState.split_impulse_end`: no step was made since models were loaded."""
 
 
 @dataclass(frozen=True)
@@ -83,8 +83,9 @@ class RunState:
         servos: by joint row.
         loops: PID loops of timed efforts, by force id.
         dampers: by the first joint row of the body.
-        parting_end: the step at which split impulses end, which separate overlaps of loaded models
-            without velocity; None if they do not act, PARTING_NOT_BEGUN before the first step.
+        split_impulse_end: the step at which split impulses end, which separate overlaps of loaded
+            models without velocity; None if they do not act, SPLIT_IMPULSES_NOT_BEGUN before the
+            first step.
         stopped: first link rows of bodies that were stopped because they went too far.
     """
 
@@ -92,7 +93,7 @@ class RunState:
     servos: Tuple[Tuple[int, ServoMemory], ...] = ()
     loops: Tuple[Tuple[int, LoopMemory], ...] = ()
     dampers: Tuple[Tuple[int, DamperMemory], ...] = ()
-    parting_end: Optional[int] = None
+    split_impulse_end: Optional[int] = None
     stopped: Tuple[int, ...] = ()
 
 

@@ -62,7 +62,7 @@ def flies(body: Body, before: Vec3, now: Vec3, pull: Vec3) -> bool:
 
     `pull`: velocity that gravity adds in this time, m/s.
     """
-    alone = add(before, pull) if body.parts[0].gravity else before
+    alone = add(before, pull) if body.parts[0].link.gravity else before
     return dist(now, alone) <= _SAME * (1.0 + norm(alone))
 
 

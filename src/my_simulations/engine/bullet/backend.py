@@ -330,13 +330,13 @@ class BulletBackend:
             if place is not None:
                 resting[body.lead_row] = place
         return replace(helpers.forces.run_state(), resting=tuple(resting.items()),
-                       parting_end=helpers.settling.parting_end,
+                       split_impulse_end=helpers.settling.split_impulse_end,
                        stopped=tuple(body.lead_row for body in helpers.divergence.stopped))
 
     def _set_run_state(self, command: SetRunState) -> None:
         state = command.state
         self._helpers.forces.resume(state)
-        self._helpers.settling.resume_parting(state.parting_end)
+        self._helpers.settling.resume_split_impulses(state.split_impulse_end)
         self._helpers.divergence.stop(self._rows[row][0] for row in state.stopped)
         self._helpers.restored_sleep.put(
             (self._rows[row][0], place) for row, place in state.resting)

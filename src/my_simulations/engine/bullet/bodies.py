@@ -50,7 +50,6 @@ class Part:
         moments: of inertia about the principal axes, kg m^2.
         mu: the friction coefficient of the file.
         friction: the coefficient to store in PyBullet (`surface_coefficients`).
-        gravity: whether gravity acts on it.
         link: its description, with the collisions that it carries (see `surface_pieces`).
     """
 
@@ -61,16 +60,11 @@ class Part:
     moments: Vec3
     mu: float
     friction: float
-    gravity: bool
     link: Link = field(default_factory=lambda: Link(""))
 
     def com_pose(self, link_pose: Pose) -> Pose:
         """Return the world pose of the centre of mass for that of the link frame."""
         return compose(link_pose, self.link_from_com)
-
-    def com_twist(self, link_pose: Pose, twist: Twist) -> Twist:
-        """Return the twist at the centre of mass for that at the link origin."""
-        return twist_at(twist, rotate(link_pose.orientation, self.link_from_com.position))
 
 
 @dataclass
@@ -132,7 +126,7 @@ class Body:
         last_position: of its centre of mass at the last read-out, m; split impulses move a body
             without velocity.
         ties: how many joints connect it with other models.
-        loads: how many timed forces and planar velocities act on it now.
+        force_count: how many timed forces and planar velocities act on it now.
         angular_velocity_kept: share that Bullet's damping leaves of it in a step.
         shapes: its collision shapes, by PyBullet's numbers.
         pieces: of its links, with rows, centres of mass and axes of those (`surface_pieces`).
@@ -154,7 +148,7 @@ class Body:
     still_readouts: int = 0
     last_position: Optional[Vec3] = None
     ties: int = 0
-    loads: int = 0
+    force_count: int = 0
     angular_velocity_kept: float = 1.0
     shapes: Tuple[Tuple[Recipe, int], ...] = ()
     pieces: Tuple[Part, ...] = ()
@@ -199,7 +193,7 @@ class Body:
     def sleeps(self) -> bool:
         """Whether Bullet may let it sleep now: no joint ties it, no timed force acts on it."""
         return (self.rigid and self.moves and self.may_sleep
-                and not self.ties and not self.loads)
+                and not self.ties and not self.force_count)
 
     @property
     def base(self) -> Optional[Part]:
@@ -255,11 +249,6 @@ def mark_asleep(uid: int) -> None:
     pybullet.changeDynamics(uid, BASE, activationState=pybullet.ACTIVATION_STATE_SLEEP)
 
 
-def remove(body: Body) -> None:
-    for uid in body.uids:
-        pybullet.removeBody(uid)
-
-
 def set_pose(body: Body, link_pose: Pose) -> None:
     """Set the pose of a body: its first part's link frame gets the world pose `link_pose`."""
     at = body.parts[0].com_pose(link_pose)
@@ -297,7 +286,7 @@ def piece_pose(at: Pose, recipe: Recipe) -> Pose:
 
 def set_base_twist(body: Body, link_pose: Pose, twist: Twist) -> None:
     """Set the velocity of the base; `twist` is that of its link origin, in world axes."""
-    com = body.parts[0].com_twist(link_pose, twist)
+    com = twist_at(twist, rotate(link_pose.orientation, body.parts[0].link_from_com.position))
     pybullet.resetBaseVelocity(body.uid, com.linear, com.angular)
 
 

@@ -27,7 +27,6 @@ from .bodies import (
     mark_asleep,
     piece_pose,
     radius_of,
-    remove,
     set_dynamics,
 )
 from .collision_shapes import MAX_SHAPES, Recipe, ShapeFactory
@@ -214,8 +213,7 @@ class Builder:
         surface = surface_coefficients.of_link(link)
         return Part(self._first_row + number, index, masses.com, masses.mass, masses.moments,
                     surface_coefficients.friction_coefficient(surface),
-                    surface_coefficients.friction(surface, masses.mass == 0.0), link.gravity,
-                    link)
+                    surface_coefficients.friction(surface, masses.mass == 0.0), link)
 
     def _may_sleep(self, link: Link) -> bool:
         return (self._model.allow_auto_disable and link.gravity
@@ -348,7 +346,8 @@ class Builder:
     def remove(self, built: Sequence[Body]) -> None:
         self._ignore_each_other(built, False)
         for body in built:
-            remove(body)
+            for uid in body.uids:
+                pybullet.removeBody(uid)
             self._shapes.store(body.shapes)
 
     def _ignore_each_other(self, built: Sequence[Body], ignored: bool = True) -> None:

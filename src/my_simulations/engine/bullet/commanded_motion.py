@@ -39,7 +39,7 @@ class PlanarMotion(StepHelper):
         """Keep bodies awake while they have planar velocities; allow sleep after it."""
         for number in sorted(numbers):
             for body in self._models[number].bodies:
-                body.loads += change
+                body.force_count += change
                 set_sleep(body)
 
     def forget(self, body: Body) -> None:

@@ -26,7 +26,7 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Set
 import pybullet
 
 from ...geometry import Vec3
-from ..run_state import PARTING_NOT_BEGUN, RestPose
+from ..run_state import SPLIT_IMPULSES_NOT_BEGUN, RestPose
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
 from .contact_points import DISTANCE, FRICTION, FRICTION_2, LOAD, OTHER_BODY
@@ -133,13 +133,13 @@ class ContactSettling(StepHelper):
                 self._notify(BodyEvent.RELEASED, body)
 
     @property
-    def parting_end(self) -> Optional[int]:
-        """See `RunState.parting_end`."""
-        return PARTING_NOT_BEGUN if self._has_new_bodies else self._split_impulse_end
+    def split_impulse_end(self) -> Optional[int]:
+        """See `RunState.split_impulse_end`."""
+        return SPLIT_IMPULSES_NOT_BEGUN if self._has_new_bodies else self._split_impulse_end
 
-    def resume_parting(self, end: Optional[int]) -> None:
+    def resume_split_impulses(self, end: Optional[int]) -> None:
         """Resume the split impulses of a saved state; added models do not start them again."""
-        if end == PARTING_NOT_BEGUN:
+        if end == SPLIT_IMPULSES_NOT_BEGUN:
             return
         self._has_new_bodies, self._split_impulse_end = False, end
         self._new_trees.clear()

@@ -77,7 +77,7 @@ class Forces(StepHelper):
     def add(self, body: Body) -> None:
         for part in body.parts:
             self._parts[part.row] = (body, part)
-            if not part.gravity and body.moves:
+            if not part.link.gravity and body.moves:
                 self._weightless[part.row] = (body, part)
         for axis in body.axes:
             self._axes[axis.row] = (body, axis)
@@ -138,8 +138,8 @@ class Forces(StepHelper):
             force = self._acting.pop(force_id, None)
             if force is not None:
                 body = self._target(force)
-                body.loads -= 1
-                if not body.loads:
+                body.force_count -= 1
+                if not body.force_count:
                     set_sleep(body)
         if any(ended):
             self._update_loop_rows()
@@ -280,8 +280,8 @@ class Forces(StepHelper):
             self._wake(targets)
             for body in targets:
                 # As in Gazebo, a force keeps its body awake.
-                body.loads += 1
-                if body.loads == 1:
+                body.force_count += 1
+                if body.force_count == 1:
                     set_sleep(body)
 
     def _target(self, force: TimedForce) -> Body:

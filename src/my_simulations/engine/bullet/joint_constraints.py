@@ -285,7 +285,7 @@ class InterModelJoints(BodyObserver):
         """Return a static body without a shape: constraints of rigid bodies need a second body."""
         if self._anchor is None:
             uid = pybullet.createMultiBody(0.0)
-            part = Part(-1, BASE, IDENTITY, 0.0, (0.0, 0.0, 0.0), 0.0, 0.0, False)
+            part = Part(-1, BASE, IDENTITY, 0.0, (0.0, 0.0, 0.0), 0.0, 0.0)
             self._anchor = Body(uid, -1, [part], moves=False, rigid=False, may_sleep=False), part
         return self._anchor
 

@@ -201,7 +201,7 @@ class JointWrenches(BodyObserver):
         for part in measured.outboard:
             state = before[part.index]
             pull, turn = _inertial_wrench(part, state, found[part.index],
-                                          self._gravity if part.gravity else ZERO3)
+                                          self._gravity if part.link.gravity else ZERO3)
             force = add(force, pull)
             torque = add(torque, add(turn, cross(subtract(state.position, anchor), pull)))
             for outer, at, moment in states.outside.get(part.index, ()):
