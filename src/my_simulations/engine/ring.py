@@ -390,12 +390,10 @@ class RingReader:
         if words[slot + SEQ_END] != sequence:
             return None
         keep_order()
-        clock = Clock(words[slot + EPOCH_STEP], words[slot + EPOCH_NS], words[slot + STEP_PS])
-        step = words[slot + SLOT_STEP]
-        at = slot + HEAD_WORDS
+        clock, step = self._clock_of(slot), words[slot + SLOT_STEP]
         # As bytes: most readers want a few rows, and a number for each cell takes much longer.
-        links = memoryview(bytes(doubles[at:at + words[slot + USED_LINKS] * LINK_WIDTH])).cast("d")
-        at += _LINK_WORDS
+        links = memoryview(self._links_of(slot)).cast("d")
+        at = slot + _FIRST_JOINT
         joints = memoryview(bytes(
             doubles[at:at + words[slot + USED_JOINTS] * JOINT_WIDTH])).cast("d")
         now = words[STEP]

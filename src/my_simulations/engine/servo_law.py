@@ -183,29 +183,29 @@ class ServoLaw:
 
     def _velocity_output(self, command: float, position: float, rate: float) -> float:
         """Return a rate within the limits, or the effort of the inner loop that follows it."""
-        servo = self.servo
-        slow, fast = -servo.most_rate, servo.most_rate
-        if servo.soft is not None:
-            slow, fast = servo.soft.rates(position, servo.most_rate)
+        slow, fast = self._rate_limits(position)
         command = max(slow, min(fast, command))
-        if self._inner is None:
-            return command
-        return max(-servo.most_effort, min(servo.most_effort,
-                                           self._inner.command(command - rate, self._dt)))
+        return command if self._inner is None else self._inner_effort(self._inner, command - rate)
+
+    def _rate_limits(self, position: float) -> Tuple[float, float]:
+        servo = self.servo
+        if servo.soft is not None:
+            return servo.soft.rates(position, servo.most_rate)
+        return -servo.most_rate, servo.most_rate
+
+    def _inner_effort(self, inner: Pid, error: float) -> float:
+        most = self.servo.most_effort
+        return max(-most, min(most, inner.command(error, self._dt)))
 
     def _position_output(self, command: float, position: float, step: int) -> float:
         servo, dt = self.servo, self._dt
         before = position if self.before is None else self.before
-        slow, fast = -servo.most_rate, servo.most_rate
-        if servo.soft is not None:
-            slow, fast = servo.soft.rates(before, servo.most_rate)
+        slow, fast = self._rate_limits(before)
         command = self._within(command, before + slow * dt, before + fast * dt)
         if self._inner is not None:
             self.before = command
             error = command - position
-            if servo.wraps:
-                error = wrapped_angle(error)
-            return max(-servo.most_effort, min(servo.most_effort, self._inner.command(error, dt)))
+            return self._inner_effort(self._inner, wrapped_angle(error) if servo.wraps else error)
         # A motor arrives at the end of the step where the spline is then.
         ahead = command
         if servo.spline is not None:

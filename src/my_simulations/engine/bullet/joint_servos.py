@@ -208,17 +208,14 @@ class JointServos:
 
     def efforts(self, rows: Sequence[int]) -> Tuple[float, ...]:
         """Return the efforts on axes in the last step, N m or N; 0 without a servo or motor."""
-        found: List[float] = []
-        for row in rows:
+        def effort(row: int) -> float:
             law = self._laws.get(row)
-            if row not in self._axes:
-                found.append(0.0)
-            elif law is not None and law.gives_effort:
-                found.append(0.0 if row in self._loop_rows else law.last)
-            else:
-                body, axis = self._axes[row]
-                found.append(float(pybullet.getJointState(body.uid, axis.index)[3]))
-        return tuple(found)
+            if row not in self._axes or law is not None and law.gives_effort:
+                return self.effort_of(row)
+            body, axis = self._axes[row]
+            return float(pybullet.getJointState(body.uid, axis.index)[3])
+
+        return tuple(map(effort, rows))
 
     def _collect_busy(self) -> None:
         """Collect the servos that must be computed in each step, by body."""
