@@ -154,7 +154,7 @@ def test_an_emptied_world_is_not_filled_again(lab):
 
 def test_an_engine_that_cannot_build_a_world_again_ends(lab):
     _filled(lab)
-    for path in lab.backend._shapes._files.values():
+    for path in lab.backend._shapes._files._paths.values():
         os.remove(path)
     with pytest.raises(EngineBrokenError, match="built again"):
         lab.apply(Restart(tuple((number, Pose()) for number in lab.backend._models)))

@@ -1,14 +1,9 @@
 """Make the collision shapes of a link in PyBullet."""
 from __future__ import annotations
 
-import contextlib
 import functools
-import hashlib
-import io
-import os
-import weakref
 from dataclasses import dataclass, field, replace
-from typing import Any, Dict, Iterator, List, Optional, Sequence, TextIO, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 import pybullet
@@ -32,19 +27,16 @@ from ...description.shapes import (
     mesh_key,
 )
 from ...errors import SimulationError
-from ...geometry import IDENTITY, Pose, compose, multiply, rotate, transform
-from ..convex.hull_points import hull_points, shrunk, triangles_of_all_points
-from ..scratch_folder import Scratch
+from ...geometry import IDENTITY, Pose, compose, multiply, rotate
 from ..surface_pieces import by_surface
 from .face_boxes import FaceBoxes
+from .shape_files import HullFile, ShapeFiles
 
 MAX_SHAPES = 16
 """Shapes in one compound; one more crashes the process (measured, PyBullet 3.2.7)."""
 
 MAX_TRIANGLES = 100_000
 """Triangles of a static shape; larger meshes are divided. Bullet needs 0.15 s for so many."""
-
-_ROWS = 10_000
 
 _MARGIN = 1e-3
 """Margin of a hull in a compound, m; the margin of a single hull can be removed."""
@@ -58,21 +50,6 @@ _R3 = (0.8191725133961645, 0.6710436067037893, 0.5497004779019703)
 
 class ShapeError(SimulationError):
     """PyBullet rejects a collision; the message is one sentence for the user."""
-
-
-class HullFile:
-    """A file of convex parts that is removed with the last recipe that names it."""
-
-    def __init__(self, path: str, text: str) -> None:
-        self.path = path
-        with open(path, "w", encoding="ascii") as stream:
-            stream.write(text)
-        weakref.finalize(self, _remove, path)
-
-
-def _remove(path: str) -> None:
-    with contextlib.suppress(FileNotFoundError):  # the folder was removed before
-        os.remove(path)
 
 
 @dataclass(frozen=True)
@@ -116,19 +93,15 @@ class ShapeFactory:
     """
 
     def __init__(self) -> None:
-        self._scratch = Scratch()
-        self._files: Dict[str, str] = {}
-        self._hull_files: "weakref.WeakValueDictionary[str, HullFile]" = (
-            weakref.WeakValueDictionary())
+        self._files = ShapeFiles()
         self._faces = FaceBoxes()
-        self._count = 0
         self._unseen = -1
         self._unused: Dict[str, List[int]] = {}
         self.moments: Dict[Tuple[int, float], Tuple[float, float, float]] = {}
 
     def close(self) -> None:
         """Remove the mesh files."""
-        self._scratch.close()
+        self._files.close()
 
     @property
     def unseen(self) -> int:
@@ -185,7 +158,7 @@ class ShapeFactory:
         # A moving link must be one body. Shapes beyond the limit become hulls in one file.
         solid.sort(key=lambda c: isinstance(c.geometry, (Box, Mesh)))
         kept, rest = solid[:MAX_SHAPES - 1], solid[MAX_SHAPES - 1:]
-        return [self._recipe(kept, meshes, frame, static, self._hulls(rest, meshes, frame))]
+        return [self._recipe(kept, meshes, frame, static, self._files.hulls(rest, meshes, frame))]
 
     def static_recipes(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
                        whole: bool = False) -> Iterator[Recipe]:
@@ -296,75 +269,15 @@ class ShapeFactory:
         if isinstance(geometry, Plane):
             return {"type": pybullet.GEOM_PLANE}
         if isinstance(geometry, (Ellipsoid, Cone)):
-            return {"type": pybullet.GEOM_MESH, "file": self._hull(geometry)}
+            return {"type": pybullet.GEOM_MESH, "file": self._files.hull_of(geometry)}
         if isinstance(geometry, SOLIDS):
             key = mesh_key(geometry)
             if key not in meshes:
                 raise ShapeError(f"the shape {key} was not made ready")
             flags = pybullet.GEOM_FORCE_CONCAVE_TRIMESH if static else 0
             return {"type": pybullet.GEOM_MESH, "flags": flags,
-                    "file": self._file(key, meshes[key], static, margin)}
+                    "file": self._files.mesh(key, meshes[key], static, margin)}
         raise ShapeError(f"no collision shape for {type(geometry).__name__}")
-
-    def _hulls(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose) -> HullFile:
-        """Write several collisions to one file of convex parts, in the body's frame.
-
-        The path depends on the content only. So equal links have equal recipes, and reuse the
-        shapes of removed links.
-        """
-        stream, first = io.StringIO(), 1
-        for collision in collisions:
-            pose = compose(frame, collision.pose)
-            for points, triangles in _pieces(collision, meshes):
-                rows: Any = points.tolist()
-                moved = [transform(pose, (p[0], p[1], p[2])) for p in rows]
-                _write_part(stream, np.array(moved), np.asarray(triangles), first)
-                first += len(moved)
-        text = stream.getvalue()
-        name = hashlib.sha256(text.encode("ascii")).hexdigest()
-        file = self._hull_files.get(name)
-        if file is None:
-            file = HullFile(os.path.join(self._scratch.path, f"{name}.obj"), text)
-            self._hull_files[name] = file
-        return file
-
-    def _hull(self, geometry: Geometry) -> str:
-        """Write a curved shape that Bullet does not have as a hull of points; return the path."""
-        points = hull_points(geometry)
-        return self._file(repr(geometry), MeshData(points, triangles_of_all_points(len(points))),
-                          True)
-
-    def _file(self, key: str, mesh: MeshData, static: bool, margin: float = 0.0) -> str:
-        """Write a mesh to a file; PyBullet accepts meshes in compounds by file name only.
-
-        Static meshes are written as triangles, others as convex parts shrunk by `margin`, m.
-        """
-        key = f"{key} {len(mesh.triangles) if static else 'pieces'} {margin}"
-        if key not in self._files:
-            self._count += 1
-            path = os.path.join(self._scratch.path, f"{self._count}.obj")
-            first = 1
-            with open(path, "w", encoding="ascii") as stream:
-                for piece in [mesh] if static or not mesh.parts else mesh.parts:
-                    vertices, triangles = np.asarray(piece.vertices), np.asarray(piece.triangles)
-                    if static and len(vertices) > triangles.size:  # a piece of a large mesh
-                        used, numbers = np.unique(triangles, return_inverse=True)
-                        vertices, triangles = vertices[used], numbers.reshape(-1, 3)
-                    if margin:
-                        vertices = shrunk(vertices, triangles, margin)
-                    _write_part(stream, vertices, triangles, first)
-                    first += len(vertices)
-            self._files[key] = path
-        return self._files[key]
-
-
-def _write_part(stream: TextIO, vertices: np.ndarray, triangles: np.ndarray, first: int) -> None:
-    """Write one OBJ object; `first` is the number of its first vertex in the file."""
-    stream.write(f"o part{first}\n")
-    for rows, line in ((vertices, "v %r %r %r\n"), (triangles + first, "f %d %d %d\n")):
-        for at in range(0, len(rows), _ROWS):  # many lines in one operation: five times as fast
-            some = rows[at:at + _ROWS]
-            stream.write(line * len(some) % tuple(some.ravel().tolist()))
 
 
 def _triangles(collision: Collision, meshes: MeshTable) -> int:
@@ -384,17 +297,6 @@ def _divided(collision: Collision, meshes: MeshTable) -> Iterator[Tuple[Collisio
         piece = Mesh(path=f"{key} from {at}")
         yield replace(collision, geometry=piece), {
             mesh_key(piece): MeshData(mesh.vertices, mesh.triangles[at:at + MAX_TRIANGLES])}
-
-
-def _pieces(collision: Collision, meshes: MeshTable) -> List[Tuple[np.ndarray, np.ndarray]]:
-    """Return the convex parts of a collision: points, and triangles that use all of them."""
-    geometry = collision.geometry
-    if isinstance(geometry, SOLIDS):
-        mesh = meshes[mesh_key(geometry)]
-        return [(np.asarray(piece.vertices), np.asarray(piece.triangles))
-                for piece in mesh.parts or [mesh]]
-    points = hull_points(geometry)
-    return [(points, triangles_of_all_points(len(points)))]
 
 
 def _is_hull(collision: Collision, meshes: MeshTable, static: bool) -> bool:
