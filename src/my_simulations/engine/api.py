@@ -51,7 +51,6 @@ class Event:
     kind: str
     message: str
     model_id: int = -1
-    step: int = 0
 
 
 class Engine(Protocol):

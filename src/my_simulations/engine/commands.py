@@ -229,9 +229,7 @@ class PinModels(Command):
 
 @dataclass(frozen=True)
 class ReadContacts(Command):
-    """The contacts of the last step. Reply value: a tuple of at most `limit` `Contact`s."""
-
-    limit: int = 2000
+    """The contacts of the last step. Reply value: a tuple of at most 2000 `Contact`s."""
 
 
 @dataclass(frozen=True)

@@ -81,7 +81,7 @@ class BulletBackend:
             SetMotors: lambda command: self._helpers.motors.set(command.motors),
             SetPlanarVelocities: lambda command: self._helpers.planar.set(command.velocities),
             ReadContacts: lambda command: read_contacts(
-                self._bodies, command.limit, self._helpers.wheel_friction),
+                self._bodies, self._helpers.wheel_friction),
             SetWheelSlips: self._set_wheel_slips,
             ReadJointWrenches: lambda command: self._helpers.wrenches.read(command),
             SetServos: lambda command: self._helpers.forces.servos.set(
@@ -159,7 +159,7 @@ class BulletBackend:
         return self._readout.tables()
 
     def events(self) -> List[Event]:
-        return self._notices.taken()
+        return self._notices.take_events()
 
     def close(self) -> None:
         """Disconnect and remove scratch files."""

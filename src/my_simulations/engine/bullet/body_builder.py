@@ -57,14 +57,13 @@ _FIXED = _Masses(0.0, IDENTITY, (0.0, 0.0, 0.0))
 
 @dataclass(frozen=True)
 class _Rigid:
-    """A joint-free link, ready to be built; `carriers` has the surface of each of `pieces`."""
+    """A joint-free link, ready to be built; `pieces`: its shapes, each with a link's surface."""
 
     number: int
     static: bool
     masses: _Masses
     model_from_com: Pose
-    pieces: Tuple[Recipe, ...]
-    carriers: Tuple[Link, ...]
+    pieces: Tuple[Tuple[Recipe, Link], ...]
 
 
 @dataclass(frozen=True)
@@ -150,22 +149,20 @@ class Builder:
             alike = replace(carrier, collisions=carrier.collisions[:1]) if static else carrier
             found += [(recipe, alike) for recipe in recipes]
         found = found or [(self._shapes.empty(self._first_row + number), link)]
-        return _Rigid(number, static, masses, compose(link.pose, masses.com),
-                      tuple(recipe for recipe, _ in found),
-                      tuple(carrier for _, carrier in found))
+        return _Rigid(number, static, masses, compose(link.pose, masses.com), tuple(found))
 
     def _build_rigid(self, rigid: _Rigid, pose: Pose) -> Body:
         link, masses = self._model.links[rigid.number], rigid.masses
         at = compose(pose, rigid.model_from_com)
-        taken = tuple((piece, self._shapes.take(piece)) for piece in rigid.pieces)
+        taken = tuple((piece, self._shapes.take_shape(piece)) for piece, _ in rigid.pieces)
         uids = [self._create(masses, shape, piece_pose(at, piece)) for piece, shape in taken]
-        for uid, piece, carrier in zip(uids, rigid.pieces, rigid.carriers):
+        for uid, (piece, carrier) in zip(uids, rigid.pieces):
             (collision_groups.static if rigid.static else collision_groups.moving)(
                 carrier, piece.role).set(uid, BASE)
             _remove_margin(uid, BASE, piece)
         part = self._part(rigid.number, BASE, masses, link)
         carriers = tuple(self._part(rigid.number, BASE, masses, carrier)
-                         for carrier in rigid.carriers) if rigid.static else ()
+                         for _, carrier in rigid.pieces) if rigid.static else ()
         body = Body(uids[0], self.model_id, [part], more=tuple(uids[1:]), carriers=carriers,
                     moves=not rigid.static, rigid=not self._articulated,
                     is_sphere=[type(c.geometry) for c in link.collisions] == [Sphere],
@@ -190,7 +187,7 @@ class Builder:
         """
         def create(mass: float) -> int:
             uid: int = pybullet.createMultiBody(
-                mass, shape, self._shapes.unseen, at.position, at.orientation,
+                mass, shape, self._shapes.visual_shape, at.position, at.orientation,
                 useMaximalCoordinates=int(not self._articulated))
             return uid
 
@@ -278,14 +275,15 @@ class Builder:
         return found[0] if found else None
 
     def _build_tree(self, tree: _Tree, pose: Pose) -> Body:
-        fixed, unseen = tree.plan.fixed_base, self._shapes.unseen
-        shapes = [-1 if recipe is None else self._shapes.take(recipe) for recipe in tree.shapes]
+        fixed, visual = tree.plan.fixed_base, self._shapes.visual_shape
+        shapes = [-1 if recipe is None else self._shapes.take_shape(recipe)
+                  for recipe in tree.shapes]
         base_shape, children = (-1, shapes) if fixed else (shapes[0], shapes[1:])
         at = compose(pose, tree.model_from_base)
         uid = pybullet.createMultiBody(
-            baseCollisionShapeIndex=base_shape, baseVisualShapeIndex=unseen,
+            baseCollisionShapeIndex=base_shape, baseVisualShapeIndex=visual,
             basePosition=at.position, baseOrientation=at.orientation,
-            linkCollisionShapeIndices=children, linkVisualShapeIndices=[unseen] * len(children),
+            linkCollisionShapeIndices=children, linkVisualShapeIndices=[visual] * len(children),
             **tree.arguments)
         body = self._finish_tree(uid, tree)
         body.shapes = tuple((recipe, shape) for recipe, shape in zip(tree.shapes, shapes)
@@ -348,7 +346,7 @@ class Builder:
         for body in built:
             for uid in body.uids:
                 pybullet.removeBody(uid)
-            self._shapes.store(body.shapes)
+            self._shapes.store_shapes(body.shapes)
 
     def _ignore_each_other(self, built: Sequence[Body], ignored: bool = True) -> None:
         """Disable collisions of links of one model, except where `self_collide` enables them."""

@@ -69,7 +69,7 @@ def _bits(link: Link) -> int:
     return bits if link.collisions else EVERYTHING
 
 
-def ignore(one: int, other: int, index: int, other_index: int, ignored: bool = True) -> None:
+def ignore(one: int, other: int, index: int, other_index: int, ignored: bool) -> None:
     """Disable collisions of two links, or enable them again.
 
     Bullet keeps this when the bodies are removed, and gives their numbers to the next ones.

@@ -95,7 +95,7 @@ class ShapeFactory:
     def __init__(self) -> None:
         self._files = ShapeFiles()
         self._faces = FaceBoxes()
-        self._unseen = -1
+        self._visual_shape = -1
         self._unused: Dict[str, List[int]] = {}
         self.moments: Dict[Tuple[int, float], Tuple[float, float, float]] = {}
 
@@ -104,18 +104,18 @@ class ShapeFactory:
         self._files.close()
 
     @property
-    def unseen(self) -> int:
+    def visual_shape(self) -> int:
         """A visual shape of one triangle for all bodies of a world; nothing is rendered here.
 
         Without it PyBullet makes a textured visual shape for every collision shape: a sphere or
         a plane then takes three times as long to create, and a mesh is read twice (measured).
         """
-        if self._unseen < 0:
-            self._unseen = pybullet.createVisualShape(
+        if self._visual_shape < 0:
+            self._visual_shape = pybullet.createVisualShape(
                 pybullet.GEOM_MESH, vertices=[(0, 0, 0), (1, 0, 0), (0, 1, 0)], indices=[0, 1, 2])
-        return self._unseen
+        return self._visual_shape
 
-    def take(self, recipe: Recipe) -> int:
+    def take_shape(self, recipe: Recipe) -> int:
         """Return the PyBullet number of a shape that no body uses. Raises ShapeError.
 
         PyBullet keeps the shapes of removed bodies and cannot remove them. With a new shape for
@@ -124,14 +124,14 @@ class ShapeFactory:
         unused = self._unused.get(recipe.key)
         return unused.pop() if unused else recipe.make()
 
-    def store(self, taken: Sequence[Tuple[Recipe, int]]) -> None:
-        """Store the shapes of a removed body, so that `take` can return them again."""
+    def store_shapes(self, taken: Sequence[Tuple[Recipe, int]]) -> None:
+        """Store the shapes of a removed body, so that `take_shape` can return them again."""
         for recipe, number in taken:
             self._unused.setdefault(recipe.key, []).append(number)
 
     def forget_world(self) -> None:
         """Discard the shapes after a reset of the simulation; mesh files stay."""
-        self._unseen = -1
+        self._visual_shape = -1
         self._unused.clear()
         self.moments.clear()
 
@@ -172,7 +172,7 @@ class ShapeFactory:
             yield self._floor(plane, meshes, frame)
         faces: List[Collision] = []
         if not whole:
-            solid, faces, meshes = self._faces.parted(solid, meshes)
+            solid, faces, meshes = self._faces.replace_faces(solid, meshes)
             large = [c for c in solid if _triangles(c, meshes) > MAX_TRIANGLES]
             solid = [c for c in solid if _triangles(c, meshes) <= MAX_TRIANGLES]
             for collision in large:
@@ -187,16 +187,16 @@ class ShapeFactory:
     def prepare(self, model: Model, meshes: MeshTable) -> Iterator[None]:
         """Make the shapes of a static model in advance, one for each value of the iterator.
 
-        `take` returns them later, so that the build of the model takes little time. Raises
+        `take_shape` returns them later, so that the build of the model takes little time. Raises
         ShapeError: a shape cannot be made.
         """
         for link in model.links:
             for collision in link.collisions:
-                self._faces.parted([collision], meshes)
+                self._faces.replace_faces([collision], meshes)
                 yield
             for carrier in by_surface(link):
                 for recipe in self.static_recipes(carrier.collisions, meshes, IDENTITY):
-                    self.store([(recipe, recipe.make())])
+                    self.store_shapes([(recipe, recipe.make())])
                     yield
 
     def _floor(self, plane: Collision, meshes: MeshTable, frame: Pose) -> Recipe:

@@ -24,10 +24,11 @@ from .contact_points import (
 from .edge_loads import NEAR
 from .wheel_friction import WheelFriction
 
+_MOST_CONTACTS = 2000
 
-def read_contacts(bodies: Dict[int, Body], limit: int,
-                  wheel_friction: WheelFriction) -> Tuple[Contact, ...]:
-    """Return at most `limit` contacts between registered links; `bodies` by PyBullet's number.
+
+def read_contacts(bodies: Dict[int, Body], wheel_friction: WheelFriction) -> Tuple[Contact, ...]:
+    """Return contacts between registered links; `bodies` by PyBullet's number.
 
     Friction and loads of `wheel_friction` replace Bullet's. Points of separated surfaces without a
     load are omitted: Gazebo's engines report contacts of overlapping shapes only.
@@ -56,6 +57,6 @@ def read_contacts(bodies: Dict[int, Body], limit: int,
                 friction = friction if each is None else add(friction, scale(each.force, sign))
             found.append(Contact(rows[0], rows[1], contact[OTHER_POINT], contact[NORMAL],
                                  -contact[DISTANCE], force, friction))
-        if len(found) >= limit:
+        if len(found) >= _MOST_CONTACTS:
             break
     return tuple(found)

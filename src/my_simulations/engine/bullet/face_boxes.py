@@ -39,8 +39,8 @@ class FaceBoxes:
     def __init__(self) -> None:
         self._faces: Dict[str, Optional[FlatFaces]] = {}   # None: the mesh has no flat faces
 
-    def parted(self, solid: Sequence[Collision],
-               meshes: MeshTable) -> Tuple[List[Collision], List[Collision], Dict[str, MeshData]]:
+    def replace_faces(self, solid: Sequence[Collision], meshes: MeshTable,
+                      ) -> Tuple[List[Collision], List[Collision], Dict[str, MeshData]]:
         """Return the unchanged collisions, the boxes, and the meshes without their flat faces."""
         left: List[Collision] = []
         boxes: List[Collision] = []

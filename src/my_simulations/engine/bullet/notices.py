@@ -23,7 +23,7 @@ class Notices:
         self._events: List[Event] = []
         self._reported: Set[Union[int, str]] = set()   # ids of models, texts of misfits
 
-    def taken(self) -> List[Event]:
+    def take_events(self) -> List[Event]:
         """Return the events since the last call."""
         found, self._events = self._events, []
         return found
