@@ -9,20 +9,7 @@ import pybullet
 from ...geometry import ZERO3, Pose, Vec3, add, multiply, rotate, scale, transform
 from ..body_plan import BASE
 from .bodies import Body
-from .contact_points import (
-    BODY,
-    DISTANCE,
-    FRICTION,
-    FRICTION_2,
-    LINK,
-    LOAD,
-    NORMAL,
-    OTHER_BODY,
-    OTHER_LINK,
-    OTHER_POINT,
-    POINT,
-    friction_force,
-)
+from .contact_points import FRICTION, FRICTION_2, friction_force
 from .link_states import Motion
 
 Acting = Dict[int, List[Tuple[Vec3, Vec3, Vec3]]]
@@ -45,15 +32,15 @@ def note_contacts(found: Acting, body: Body) -> None:
     owners = body.owners
     for contact in pybullet.getContactPoints() if any(
             contact[FRICTION] or contact[FRICTION_2] for contact in mine) else mine:
+        _, one, other, link, other_link, point, other_point, normal, distance, load = contact[:10]
         # Separated surfaces have the force of an older step.
-        if contact[DISTANCE] > 0.0 or body.uid not in contact[1:3]:
+        if distance > 0.0 or body.uid not in (one, other):
             continue
-        force = add(scale(contact[NORMAL], contact[LOAD]), friction_force(contact))
-        if contact[BODY] == body.uid:
-            note(found, owners.get(contact[LINK], contact[LINK]), force, contact[POINT])
-        if contact[OTHER_BODY] == body.uid:
-            note(found, owners.get(contact[OTHER_LINK], contact[OTHER_LINK]), scale(force, -1.0),
-                 contact[OTHER_POINT])
+        force = add(scale(normal, load), friction_force(contact))
+        if one == body.uid:
+            note(found, owners.get(link, link), force, point)
+        if other == body.uid:
+            note(found, owners.get(other_link, other_link), scale(force, -1.0), other_point)
 
 
 def note_constraints(found: Acting, body: Body, links: Mapping[int, Motion]) -> None:

@@ -9,18 +9,7 @@ from ...geometry import add, scale
 from ..body_plan import BASE
 from ..commands import Contact
 from .bodies import Body
-from .contact_points import (
-    BODY,
-    DISTANCE,
-    LINK,
-    LOAD,
-    NORMAL,
-    OTHER_BODY,
-    OTHER_LINK,
-    OTHER_POINT,
-    POINT,
-    friction_force,
-)
+from .contact_points import friction_force
 from .edge_loads import NEAR
 from .wheel_friction import WheelFriction
 
@@ -36,8 +25,8 @@ def read_contacts(bodies: Dict[int, Body], wheel_friction: WheelFriction) -> Tup
     found: List[Contact] = []
     for contact in pybullet.getContactPoints():
         rows = []
-        places = ((contact[BODY], contact[LINK], contact[POINT]),
-                  (contact[OTHER_BODY], contact[OTHER_LINK], contact[OTHER_POINT]))
+        _, one, other, link, other_link, point, other_point, normal, distance, load = contact[:10]
+        places = ((one, link, point), (other, other_link, other_point))
         for uid, index, _ in places:
             body = bodies.get(uid)
             rows += [] if body is None else [
@@ -45,18 +34,17 @@ def read_contacts(bodies: Dict[int, Body], wheel_friction: WheelFriction) -> Tup
                 if part.index == index or (body.rigid and part.index == BASE)][:1]
         if len(rows) == 2:
             # Bullet does not solve points of separated surfaces: their forces are of an older step.
-            force = contact[LOAD] if contact[DISTANCE] <= 0.0 else 0.0
+            force = load if distance <= 0.0 else 0.0
             acting = [wheel_friction.acting_at(*mine, (theirs[0], theirs[1]))
-                      if contact[DISTANCE] < NEAR else None
+                      if distance < NEAR else None
                       for mine, theirs in zip(places, reversed(places))]
             force = next((each.load for each in acting if each is not None), force)
-            if force <= 0.0 and contact[DISTANCE] > 0.0:
+            if force <= 0.0 and distance > 0.0:
                 continue
             friction = friction_force(contact)
             for each, sign in zip(acting, (1.0, -1.0)):
                 friction = friction if each is None else add(friction, scale(each.force, sign))
-            found.append(Contact(rows[0], rows[1], contact[OTHER_POINT], contact[NORMAL],
-                                 -contact[DISTANCE], force, friction))
+            found.append(Contact(rows[0], rows[1], other_point, normal, -distance, force, friction))
         if len(found) >= _MOST_CONTACTS:
             break
     return tuple(found)
