@@ -17,35 +17,28 @@ _UNLIMITED_EFFORT = 1e7   # N or N m: the limit of a motor without one
 _UNLIMITED_RATE = 1e5     # rad/s or m/s: the same for its rate
 
 
-class _Loops:
-    """The servos of one body that must be computed in every step.
-
-    There are two kinds: servos that return an effort, and servos that set the rate of a motor.
-    """
-
-    def __init__(self, uid: int) -> None:
-        self.uid = uid
-        self.efforts, self.motors = _ServoList(), _ServoList()
-        self.motor_efforts: List[float] = []   # largest efforts of `motors`, N m or N
-
-    def add(self, axis: Axis, law: ServoLaw) -> None:
-        servos = self.efforts if law.gives_effort else self.motors
-        servos.indices.append(axis.index)
-        servos.rows.append(axis.row)
-        servos.laws.append(law)
-        servos.advances.append(law.advance)
-        if servos is self.motors:
-            self.motor_efforts.append(_largest_effort(law.servo))
-
-
 class _ServoList:
-    """Servos of one body: PyBullet's joint indices, axis rows, laws, and their functions."""
+    """Servos of one body that must be computed in each step.
+
+    Attributes:
+        indices, rows: PyBullet's joint indices, and axis rows.
+        laws, advances: and their functions.
+        largest_efforts: of their motors, N m or N.
+    """
 
     def __init__(self) -> None:
         self.indices: List[int] = []
         self.rows: List[int] = []
         self.laws: List[ServoLaw] = []
         self.advances: List[Advance] = []
+        self.largest_efforts: List[float] = []
+
+    def add(self, axis: Axis, law: ServoLaw) -> None:
+        self.indices.append(axis.index)
+        self.rows.append(axis.row)
+        self.laws.append(law)
+        self.advances.append(law.advance)
+        self.largest_efforts.append(_largest_effort(law.servo))
 
     def advanced(self, uid: int, step: int) -> List[float]:
         """Return the effort or rate of each servo in the step that begins at count `step`."""
@@ -62,7 +55,9 @@ class JointServos:
         """`release` restores the motor of an axis, or its friction."""
         self._axes, self._wake, self._release = axes, wake, release
         self._laws: Dict[int, ServoLaw] = {}
-        self._busy: Dict[int, _Loops] = {}
+        # By body: servos that return an effort in each step, and servos that set a motor's rate.
+        self._effort_servos: Dict[int, _ServoList] = {}
+        self._motor_servos: Dict[int, _ServoList] = {}
         self._loop_rows: Set[int] = set()
         self._dt = 0.0
         self._step = -1   # of the last call of `act`
@@ -70,7 +65,7 @@ class JointServos:
     @property
     def idle(self) -> bool:
         """Whether no servo must be computed in each step."""
-        return not self._busy
+        return not (self._effort_servos or self._motor_servos)
 
     def disable_for_loops(self, rows: Set[int]) -> None:
         """Disable the servos of axes that PID loops drive from now on; friction stays."""
@@ -84,7 +79,7 @@ class JointServos:
 
     def drives(self, body: Body) -> bool:
         """Whether a servo of a body must be computed in each step."""
-        return body.uid in self._busy
+        return body.uid in self._effort_servos or body.uid in self._motor_servos
 
     def rate_of(self, row: int) -> float:
         """Return the rate to which an axis is driven, rad/s or m/s; 0 if none, or on a spline.
@@ -102,9 +97,9 @@ class JointServos:
     @property
     def moving(self) -> Set[int]:
         """PyBullet's numbers of bodies that move along a spline."""
-        return {uid for uid, loops in self._busy.items()
-                if any(law.moves(self._step) for servos in (loops.efforts, loops.motors)
-                       for law in servos.laws)}
+        return {uid for table in (self._effort_servos, self._motor_servos)
+                for uid, servos in table.items()
+                if any(law.moves(self._step) for law in servos.laws)}
 
     def set(self, servos: Iterable[JointServo], dt: float) -> None:
         """Set some servos; others stay. Raises CommandRefusedError before any servo is set."""
@@ -168,7 +163,8 @@ class JointServos:
 
     def forget(self, body: Body) -> None:
         """Discard the data of a removed body."""
-        self._busy.pop(body.uid, None)
+        self._effort_servos.pop(body.uid, None)
+        self._motor_servos.pop(body.uid, None)
         for axis in body.axes:
             self._laws.pop(axis.row, None)
 
@@ -179,20 +175,18 @@ class JointServos:
         of servos are added to `efforts`, N m or N by row. For all others they are applied here.
         """
         self._step = step
-        for uid, loops in self._busy.items():
-            wanted = loops.efforts
-            if wanted.rows:
-                given = wanted.advanced(uid, step)
-                if uid in shared:
-                    for row, effort in zip(wanted.rows, given):
-                        efforts[row] = efforts.get(row, 0.0) + effort
-                else:
-                    pybullet.setJointMotorControlArray(
-                        uid, wanted.indices, pybullet.TORQUE_CONTROL, forces=given)
-            if loops.motors.rows:
+        for uid, servos in self._effort_servos.items():
+            given = servos.advanced(uid, step)
+            if uid in shared:
+                for row, effort in zip(servos.rows, given):
+                    efforts[row] = efforts.get(row, 0.0) + effort
+            else:
                 pybullet.setJointMotorControlArray(
-                    uid, loops.motors.indices, pybullet.VELOCITY_CONTROL,
-                    targetVelocities=loops.motors.advanced(uid, step), forces=loops.motor_efforts)
+                    uid, servos.indices, pybullet.TORQUE_CONTROL, forces=given)
+        for uid, servos in self._motor_servos.items():
+            pybullet.setJointMotorControlArray(
+                uid, servos.indices, pybullet.VELOCITY_CONTROL,
+                targetVelocities=servos.advanced(uid, step), forces=servos.largest_efforts)
 
     def effort_of(self, row: int) -> float:
         """Return the effort of a servo in the last step, N m or N; 0 if it drives a motor."""
@@ -219,11 +213,12 @@ class JointServos:
 
     def _collect_busy(self) -> None:
         """Collect the servos that must be computed in each step, by body."""
-        self._busy = {}
+        self._effort_servos, self._motor_servos = {}, {}
         for row, law in self._laws.items():
             if not law.steady and row not in self._loop_rows:
                 body, axis = self._axes[row]
-                self._busy.setdefault(body.uid, _Loops(body.uid)).add(axis, law)
+                table = self._effort_servos if law.gives_effort else self._motor_servos
+                table.setdefault(body.uid, _ServoList()).add(axis, law)
 
     def _drive(self, body: Body, axis: Axis) -> None:
         """Set the PyBullet motor of a servo that needs no computation in each step."""
