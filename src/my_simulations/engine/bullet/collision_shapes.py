@@ -27,7 +27,7 @@ from ...description.shapes import (
     mesh_key,
 )
 from ...errors import SimulationError
-from ...geometry import IDENTITY, Pose, compose, multiply, rotate
+from ...geometry import IDENTITY, IDENTITY_QUAT, ZERO3, Pose, compose, multiply, rotate
 from ..surface_pieces import by_surface
 from .face_boxes import FaceBoxes
 from .shape_files import HullFile, ShapeFiles
@@ -46,6 +46,12 @@ _FLOOR = 1e6
 
 _R3 = (0.8191725133961645, 0.6710436067037893, 0.5497004779019703)
 """Steps of the additive recurrence R3, which fills a cube evenly (M. Roberts, 2018)."""
+
+_MESH: Dict[str, Any] = {
+    "shapeTypes": pybullet.GEOM_MESH, "halfExtents": ZERO3, "radii": 0.0, "lengths": 0.0,
+    "fileNames": "", "meshScales": (1.0, 1.0, 1.0), "planeNormals": (0.0, 0.0, 1.0), "flags": 0,
+    "collisionFramePositions": ZERO3, "collisionFrameOrientations": IDENTITY_QUAT}
+"""The arguments of createCollisionShapeArray for a mesh in the body's frame."""
 
 
 class ShapeError(SimulationError):
@@ -231,52 +237,41 @@ class ShapeFactory:
         is_hull = (len(collisions) == 1 and hulls is None
                    and _is_hull(collisions[0], meshes, static))
         margin = 0.0 if is_hull or static else _MARGIN
-        columns = [self._column(c, meshes, frame, static, margin) for c in collisions]
+        shapes = []
+        for collision in collisions:
+            at, turn = compose(frame, collision.pose)
+            if isinstance(collision.geometry, Plane):
+                turn = multiply(turn, _to_z(collision.geometry))
+            shapes.append({**_MESH, **self._geometry(collision.geometry, meshes, static, margin),
+                           "collisionFramePositions": at, "collisionFrameOrientations": turn})
         if hulls is not None:
-            columns.append({"type": pybullet.GEOM_MESH, "file": hulls.path, "pose": IDENTITY})
-        return Recipe(", ".join(c.name for c in collisions), {
-            "shapeTypes": [c["type"] for c in columns],
-            "halfExtents": [c.get("half", (0, 0, 0)) for c in columns],
-            "radii": [c.get("radius", 0.0) for c in columns],
-            "lengths": [c.get("length", 0.0) for c in columns],
-            "fileNames": [c.get("file", "") for c in columns],
-            "meshScales": [(1.0, 1.0, 1.0)] * len(columns),
-            "planeNormals": [(0.0, 0.0, 1.0)] * len(columns),
-            "flags": [c.get("flags", 0) for c in columns],
-            "collisionFramePositions": [c["pose"].position for c in columns],
-            "collisionFrameOrientations": [c["pose"].orientation for c in columns],
-        }, is_hull=is_hull, hulls=hulls)
-
-    def _column(self, collision: Collision, meshes: MeshTable, frame: Pose,
-                static: bool, margin: float) -> Dict[str, Any]:
-        column = self._geometry(collision.geometry, meshes, static, margin)
-        pose = compose(frame, collision.pose)
-        if isinstance(collision.geometry, Plane):
-            pose = Pose(pose.position, multiply(pose.orientation, _to_z(collision.geometry)))
-        column["pose"] = pose
-        return column
+            shapes.append({**_MESH, "fileNames": hulls.path})
+        return Recipe(", ".join(c.name for c in collisions),
+                      {name: [shape[name] for shape in shapes] for name in _MESH},
+                      is_hull=is_hull, hulls=hulls)
 
     def _geometry(self, geometry: Geometry, meshes: MeshTable, static: bool,
                   margin: float) -> Dict[str, Any]:
+        """Return the arguments that differ from those of `_MESH`."""
         if isinstance(geometry, Box):
-            return {"type": pybullet.GEOM_BOX, "half": tuple(s / 2.0 for s in geometry.size)}
+            return {"shapeTypes": pybullet.GEOM_BOX,
+                    "halfExtents": tuple(s / 2.0 for s in geometry.size)}
         if isinstance(geometry, Sphere):
-            return {"type": pybullet.GEOM_SPHERE, "radius": geometry.radius}
+            return {"shapeTypes": pybullet.GEOM_SPHERE, "radii": geometry.radius}
         if isinstance(geometry, (Capsule, Cylinder)):
-            return {"type": pybullet.GEOM_CAPSULE if isinstance(geometry, Capsule)
-                    else pybullet.GEOM_CYLINDER, "radius": geometry.radius,
-                    "length": geometry.length}
+            return {"shapeTypes": pybullet.GEOM_CAPSULE if isinstance(geometry, Capsule)
+                    else pybullet.GEOM_CYLINDER, "radii": geometry.radius,
+                    "lengths": geometry.length}
         if isinstance(geometry, Plane):
-            return {"type": pybullet.GEOM_PLANE}
+            return {"shapeTypes": pybullet.GEOM_PLANE}
         if isinstance(geometry, (Ellipsoid, Cone)):
-            return {"type": pybullet.GEOM_MESH, "file": self._files.hull_of(geometry)}
+            return {"fileNames": self._files.hull_of(geometry)}
         if isinstance(geometry, SOLIDS):
             key = mesh_key(geometry)
             if key not in meshes:
                 raise ShapeError(f"the shape {key} was not made ready")
-            flags = pybullet.GEOM_FORCE_CONCAVE_TRIMESH if static else 0
-            return {"type": pybullet.GEOM_MESH, "flags": flags,
-                    "file": self._files.mesh(key, meshes[key], static, margin)}
+            return {"fileNames": self._files.mesh(key, meshes[key], static, margin),
+                    "flags": pybullet.GEOM_FORCE_CONCAVE_TRIMESH if static else 0}
         raise ShapeError(f"no collision shape for {type(geometry).__name__}")
 
 
