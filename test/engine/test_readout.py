@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import math
+from array import array
 
 import pybullet
 from conftest import Lab, arm, ball, box, ground, inertial_of_box
@@ -9,7 +10,7 @@ from conftest import Lab, arm, ball, box, ground, inertial_of_box
 from my_simulations.description.model import JointAxis, Link, Model
 from my_simulations.engine.commands import Restart
 from my_simulations.engine.drive_commands import JointMotor, SetMotors
-from my_simulations.engine.ring import LINK_WIDTH
+from my_simulations.engine.ring import LINK_WIDTH, pose_and_twist
 from my_simulations.geometry import Pose
 
 
@@ -111,6 +112,23 @@ def test_rows_for_records_are_those_of_a_whole_read_out_to_the_bit(lab):
     assert lab.backend.read()   # the rows were read, and their change is still reported
     links, axes = lab.backend.tables()
     assert recorded == (bytes(links), axes.cast("d").tolist()[:2]) and bytes(links) != before
+
+
+def test_rows_for_records_show_the_hit_of_a_body_at_rest_in_its_step(lab):
+    lab.load(ground(1.0))
+    struck = lab.load(box("struck", 0.2), (1.0, 0, 0.1))
+    lab.seconds(3.0)
+    striker = lab.load(ball("striker", 0.1, 5.0), (0.7, 0, 0.1))
+    lab.push(striker, (2, 0, 0))
+    lab.steps(1)
+    before = lab.pose(struck)
+    row = lab.rows[struck, "link"]
+    for _ in range(200):
+        lab.backend.step(lab.step, 1)
+        lab.step += 1
+        place = pybullet.getBasePositionAndOrientation(lab.backend._rows[row][0].uid)[0]
+        assert pose_and_twist(array("d", lab.backend.read_rows((row,))))[0].position == place
+    assert place[0] > before.position[0] + 0.01
 
 
 def test_what_a_record_of_the_world_has_read_is_still_a_change_for_snapshots(lab):

@@ -19,7 +19,7 @@ class RowReader:
     """Reads the present values of rows of the ring's tables.
 
     Args:
-        readout: its tables have the rows of bodies at rest.
+        readout: its tables have the last finite states, and rows without a link.
         links: body and part by link row.
         axes: body and axis by joint row.
     """
@@ -34,7 +34,7 @@ class RowReader:
         found = b""
         for row in rows:
             body, part = self._links.get(row, (None, None))
-            if body is not None and part is not None and readout.may_have_moved(body):
+            if body is not None and part is not None:
                 now = motion(body.uid, part.index)
                 total = sum(now.position) + sum(now.orientation) + sum(now.linear) + sum(
                     now.angular)
@@ -50,11 +50,11 @@ class RowReader:
         known = [self._axes[row] for row in rows if row in self._axes]
         if len(known) == len(rows):
             body = known[0][0]
-            if self._readout.may_have_moved(body) and all(one is body for one, _ in known):
+            if all(one is body for one, _ in known):
                 states = pybullet.getJointStates(body.uid, [axis.index for _, axis in known])
                 found = [value for state in states for value in state[:2]]
                 total = sum(found)
                 if total - total == 0.0:
                     return found
-        self._readout.update()   # the robot is at rest, in several parts, or to be put back
+        self._readout.update()   # the robot is in several parts, or to be put back
         return [value for row in rows for value in self._readout.joints[row].tolist()]

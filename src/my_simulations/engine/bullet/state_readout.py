@@ -303,10 +303,6 @@ class StateReadout(BodyObserver):
         for axis, state in zip(body.axes, states):
             _AXIS.pack_into(self._joint_bytes, axis.row * _AXIS.size, state[0], state[1])
 
-    def may_have_moved(self, body: Body) -> bool:
-        """Whether the state of a body may differ from its rows."""
-        return body.uid in self._awake or body.uid in self._trees
-
     def offset(self, row: int) -> Optional[Pose]:
         """Return the link frame in the frame of its centre of mass; None if they are equal."""
         return self._offsets.get(row)
