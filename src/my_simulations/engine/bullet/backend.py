@@ -236,7 +236,7 @@ class BulletBackend:
             raise EngineBrokenError(f"the world could not be built again: {fault}") from fault
 
     def _inherited(self, command: LoadModel) -> ModelState:
-        self._readout.read()
+        self._readout.update()
         before = self._entry(command.inherit)
         return inherited(before, command.model, self._mover.present_model_pose(before),
                          self._mover.link_state, self._readout.joints)

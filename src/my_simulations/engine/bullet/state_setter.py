@@ -6,7 +6,7 @@ pose of the link. PyBullet stores joint positions instead, so they are set toget
 from __future__ import annotations
 
 import math
-from typing import Callable, Dict, List, Optional, Tuple
+from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 import pybullet
 
@@ -66,45 +66,36 @@ class StateSetter:
         self._notify = notify
 
     def link_state(self, row: int) -> LinkState:
-        """Return the state of the link at a row, as of the last read-out."""
-        return LinkState(*pose_and_twist(self._readout.links[row].tolist()))
+        """Return the present state of the link at a row."""
+        return LinkState(*pose_and_twist(ROW.unpack(self._row_reader.read_links((row,)))))
 
     def present_model_pose(self, entry: Entry) -> Pose:
         """Return the present pose of a model frame."""
         if not entry.model.links:
             return entry.pose
         lead = _canonical(entry)
-        values = ROW.unpack(self._row_reader.read_links((entry.first_row + lead,)))
-        return compose(pose_and_twist(values)[0], inverse(entry.model.links[lead].pose))
+        return compose(self.link_state(entry.first_row + lead).pose,
+                       inverse(entry.model.links[lead].pose))
 
     def set_model(self, command: SetModelState, entry: Entry) -> None:
         """Set the pose and twist of a model. Raises CommandRefusedError."""
-        self._readout.read()
         pose, twist = self._in_world(command.pose, command.twist, command.frame)
         if not entry.model.links:
             return
         # As in Gazebo the velocity is that of the canonical link, which is what is read as well.
         row = entry.first_row + _canonical(entry)
-        current, wanted = self.link_state(row).pose, compose(
-            pose, entry.model.links[row - entry.first_row].pose)
-        self._waker.around(entry.bodies)
-        for body in entry.bodies:
-            self._move(body, row, current, wanted, twist)
-        self._waker.around(entry.bodies, awake=True)
+        self._move(entry.bodies, row,
+                   compose(pose, entry.model.links[row - entry.first_row].pose), twist)
 
     def set_link(self, command: SetLinkState) -> None:
         """Set the pose and twist of the body of a link. Raises CommandRefusedError."""
         if command.row not in self._rows:
             raise RemovedError("the link no longer exists")
-        self._readout.read()
         body, part = self._rows[command.row]
         if body.base is None and not part.link.kinematic:
             raise CommandRefusedError("the link belongs to a body that is joined to the world")
         pose, twist = self._in_world(command.pose, command.twist, command.frame)
-        current = self.link_state(part.row).pose
-        self._waker.around([body])
-        self._move(body, part.row, current, pose, twist)
-        self._waker.around([body], awake=True)
+        self._move([body], part.row, pose, twist)
 
     def set_joints(self, command: SetJoints) -> None:
         """Set positions and rates of joint axes; all are checked before any is set.
@@ -127,15 +118,18 @@ class StateSetter:
 
     def put_back(self, body: Body) -> None:
         """Put a body whose state is not finite back to its last finite pose, at rest."""
-        last = self.link_state(body.parts[0].row)
+        def last_pose(row: int) -> Pose:
+            return pose_and_twist(self._readout.links[row].tolist())[0]
+
         if body.base is not None:
-            bodies.set_pose(body, last.pose)
-            bodies.set_base_twist(body, last.pose, STILL)
+            lead = last_pose(body.parts[0].row)
+            bodies.set_pose(body, lead)
+            bodies.set_base_twist(body, lead, STILL)
         for axis in body.axes:
             bodies.set_axis_state(body, axis, float(self._readout.joints[axis.row, 0]))
         for ball in body.ball_joints:
             base = Pose(*pybullet.getBasePositionAndOrientation(body.uid))
-            set_ball_joint(body, ball, base, lambda row: LinkState(self.link_state(row).pose))
+            set_ball_joint(body, ball, base, lambda row: LinkState(last_pose(row)))
         self._notify(BodyEvent.STATE_REPAIRED, body)
 
     def _in_world(self, pose: Pose, twist: Optional[Twist],
@@ -152,12 +146,20 @@ class StateSetter:
                           rotate(at.orientation, twist.angular))
         return compose(at, pose), twist
 
-    def _move(self, body: Body, row: int, current: Pose, wanted: Pose,
+    def _move(self, moved: Sequence[Body], row: int, wanted: Pose,
               twist: Optional[Twist]) -> None:
-        """Move a body as if the link at `row`, fixed to it, went from `current` to `wanted`.
+        """Move bodies as if they were fixed to the link at `row`, which goes to the pose `wanted`.
 
         `twist` is the velocity there; None keeps it, turned.
         """
+        current = self.link_state(row).pose
+        self._waker.around(moved)
+        for body in moved:
+            self._move_body(body, row, current, wanted, twist)
+        self._waker.around(moved, awake=True)
+
+    def _move_body(self, body: Body, row: int, current: Pose, wanted: Pose,
+                   twist: Optional[Twist]) -> None:
         lead = self.link_state(body.parts[0].row)
         target = lead.pose
         rates = {axis.index: pybullet.getJointState(body.uid, axis.index)[1] for axis in body.axes}
