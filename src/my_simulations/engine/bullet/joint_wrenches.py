@@ -80,7 +80,6 @@ class _MeasuredJoint:
         joint: the description of the joint.
         child, parent: the parts at its ends; None for the world.
         outboard: the parts of its outboard links, the link at the joint first.
-        parent_from_joint: its frame at position 0; used if the child is the world.
     """
 
     body: Body
@@ -89,7 +88,6 @@ class _MeasuredJoint:
     child: Optional[Part]
     parent: Optional[Part]
     outboard: List[Part]
-    parent_from_joint: Pose
 
 
 @dataclass
@@ -195,8 +193,7 @@ class JointWrenches(BodyObserver):
         """Return the wrench of a joint; None if a state is not finite."""
         before, found = states.before, states.compute(self._dt)
         child, parent = _link_pose(measured.child, before), _link_pose(measured.parent, before)
-        anchor = (transform(child, measured.joint.pose.position) if measured.child is not None
-                  else transform(parent, measured.parent_from_joint.position))
+        anchor = _origin(measured.joint, measured.child, child, measured.parent, parent)
         force, torque = ZERO3, ZERO3
         for part in measured.outboard:
             state = before[part.index]
@@ -214,31 +211,38 @@ class JointWrenches(BodyObserver):
         return _in_child(force, torque, child, None if measured.parent is None else parent)
 
     def _find_joint(self, key: JointKey) -> Optional[_MeasuredJoint]:
+        """Return a joint of a tree; None for other joints."""
         entry = self._models.get(key[0])
         if entry is None:
             return None
         for plan, body in zip(entry.builder.plans, entry.bodies):
             for n, node in enumerate(plan.links):
-                if (node.joint is not None and node.joint.name == key[1]
-                        and node.index != NO_LINK):
-                    return _joint_at(entry, body, plan.links, n)
+                if node.index != NO_LINK and node.joint is not None and node.joint.name == key[1]:
+                    parts = {part.row - entry.first_row: part for part in body.parts}
+                    return _joint_at(node.joint, body, parts, plan.links, n)
         return None
 
 
-def _joint_at(entry: Entry, body: Body, links: Sequence[TreeLink], n: int) -> _MeasuredJoint:
-    joint = links[n].joint
-    assert joint is not None
-    parts = {part.row - entry.first_row: part for part in body.parts}
-    poses = {entry.model.links[index].name: entry.model.links[index].pose for index in parts}
-    names = {entry.model.links[index].name: part for index, part in parts.items()}
+def _joint_at(joint: Joint, body: Body, parts: Mapping[int, Part], links: Sequence[TreeLink],
+              n: int) -> _MeasuredJoint:
+    """Return the parent joint of link `n` of a body; `parts` by the link's index in the model."""
+    named = {part.link.name: part for part in body.parts}
     within = {n}
     for m in range(n + 1, len(links)):      # parents come before children
         if links[m].parent in within:
             within.add(m)
     outboard = [parts[links[m].index] for m in sorted(within) if links[m].index != NO_LINK]
-    return _MeasuredJoint(body, _links_of(parts, links), joint, names.get(joint.child),
-                names.get(joint.parent), outboard,
-                compose(inverse(poses.get(joint.parent, IDENTITY)), joint.pose))
+    return _MeasuredJoint(body, _links_of(parts, links), joint, named.get(joint.child),
+                          named.get(joint.parent), outboard)
+
+
+def _origin(joint: Joint, child: Optional[Part], child_pose: Pose, parent: Optional[Part],
+            parent_pose: Pose) -> Vec3:
+    """Return the origin of a joint, m; it is fixed to the child, or to the parent of the world."""
+    if child is not None:
+        return transform(child_pose, joint.pose.position)
+    assert parent is not None
+    return transform(compose(parent_pose, inverse(parent.link.pose)), joint.pose.position)
 
 
 def _wrench_without_links(entry: Entry, name: str) -> Optional[JointWrench]:
@@ -253,15 +257,13 @@ def _wrench_without_links(entry: Entry, name: str) -> Optional[JointWrench]:
 def _closing_wrench(entry: Entry, joint: Joint, constraints: Sequence[Constraint]) -> JointWrench:
     """Return the wrench of a loop-closing joint from its constraints."""
     ends = [entry.constraints.links.get(name) for name in (joint.child, joint.parent)]
+    child, parent = (None if end is None else end[1] for end in ends)
     poses = [IDENTITY if end is None else _link_pose(end[1], link_motions(end[0]))
              for end in ends]
     held, sign = (ends[0], 1.0) if ends[0] is not None else (ends[1], -1.0)
     assert held is not None
     link = link_motions(held[0])[held[1].index]
-    links = {link.name: link.pose for link in entry.model.links}
-    anchor = (transform(poses[0], joint.pose.position) if ends[0] is not None
-              else transform(compose(poses[1], inverse(links[joint.parent])),
-                             joint.pose.position))
+    anchor = _origin(joint, child, poses[0], parent, poses[1])
     force, torque = ZERO3, ZERO3
     for constraint in constraints:
         one, at, moment = constraint_forces(constraint.uid, held[0], held[1].index, link)
