@@ -7,8 +7,10 @@ that the plugin registered.
 from __future__ import annotations
 
 import inspect
+from typing import Tuple
 
 from .context import Context, PluginError
+from .parameters import Parameters
 
 
 class Plugin:
@@ -27,6 +29,27 @@ class Plugin:
         own = type(self)
         raise PluginError(f"the class '{own.__name__}' in {inspect.getfile(own)} has no method"
                           " 'load'")
+
+    def enter_namespace(self, default: str = "",
+                        empty_means_model: bool = False) -> Tuple[Context, Parameters]:
+        """Make names relative to `<robotNamespace>`; return the context and its parameters.
+
+        Args:
+            default: the namespace if the element is missing or empty; "" for that of the node.
+            empty_means_model: an empty element means the model's name instead.
+        """
+        context, p = self.context, self.context.parameters
+        if empty_means_model and "robotNamespace" in p:
+            default = context.model
+        context.use_namespace(p.text("robotNamespace") or default)
+        return context, p
+
+    def required_text(self, name: str) -> str:
+        """Return the text of a child element. Raises PluginError if it is missing or empty."""
+        found = self.context.parameters.text(name)
+        if not found:
+            raise PluginError(f"it has no <{name}>")
+        return found
 
     def reset(self) -> None:
         """React to a reset: models are at their initial poses, at rest, and motors are off."""

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Tuple, TypeVar
+from typing import Any, Callable, Dict, Iterable, List, Mapping, Tuple, TypeVar
 
 from ..description.model import INFINITE
 from ..geometry import IDENTITY_QUAT, Pose, Quat, Vec3, quat_from_rpy, rpy_from_quat
@@ -155,8 +155,3 @@ def _pose(text: str) -> Pose:
 def lowest_rate(*rates: float, default: float = 0.0) -> float:
     """Hz, of a plugin that can be no faster than its sensor: the lowest of the rates above 0."""
     return min((rate for rate in rates if rate > 0.0), default=default)
-
-
-def namespace_or(parameters: Parameters, default: Optional[str]) -> str:
-    """Return `<robotNamespace>`; the default if it is missing or empty."""
-    return parameters.text("robotNamespace") or (default or "")

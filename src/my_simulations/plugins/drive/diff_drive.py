@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from typing import Tuple
 
-from ..parameters import namespace_or
 from ..stepwise_change import StepwiseChange
 from .odometry import Odometer, OdometryDrive, WheelCounter
 from .wheels import VelocityCommand
@@ -18,8 +17,7 @@ _REACHED = 0.01  # m/s: a wheel that is so near to its speed has it (gazebo_plug
 
 class DiffDrive(OdometryDrive):
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, context.model))
+        context, p = self.enter_namespace(self.context.model)
         self._separation = p.positive("wheelSeparation", 0.34)
         self._radius = p.positive("wheelDiameter", 0.15) / 2.0
         self._acceleration = p.number("wheelAcceleration", 0.0)

@@ -17,7 +17,6 @@ from ...engine.wrench_laws import VelocityForce
 from ...geometry import Vec3, rpy_from_quat
 from ..base import Plugin
 from ..context import PluginError
-from ..parameters import namespace_or
 from ..stepwise_change import StepwiseChange
 from .odometry import Odometer, planar_pose
 from .wheels import VelocityCommand
@@ -38,8 +37,7 @@ class ForceBasedMove(Plugin):
     """Where the elements are missing: N s/m along x and y, N m s/rad about z."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         base = p.text("robotBaseFrame", "base_footprint")
         try:
             self._base = context.link(base)

@@ -14,7 +14,6 @@ from ...sensing.sensor_models import acceleration_between, measure_motion, veloc
 from ..base import Plugin
 from ..context import PluginError, Publication
 from ..frames import add_tf_prefix, stamp_message
-from ..parameters import namespace_or
 from ..stepwise_change import StepwiseChange
 from .floor_rays import FloorRays, sensor_named
 from .odometry import Odometer, WheelRotations, planar_pose
@@ -33,15 +32,14 @@ class Kobuki(Plugin):
     """Two driven wheels and what the base senses."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, context.model))
-        self._wheels = [context.joint(_read_name(p, f"{side}_wheel_joint_name"))
+        context, p = self.enter_namespace(self.context.model)
+        self._wheels = [context.joint(self.required_text(f"{side}_wheel_joint_name"))
                         for side in ("left", "right")]
         self._turns = WheelRotations(self._wheels)
-        self._separation = _needed_number(p, "wheel_separation")
-        self._radius = _needed_number(p, "wheel_diameter") / 2.0
-        self._torque = _needed_number(p, "torque")
-        self._imu_link, self._imu = sensor_named(context, _read_name(p, "imu_name"))
+        self._separation = self.required_number("wheel_separation")
+        self._radius = self.required_number("wheel_diameter") / 2.0
+        self._torque = self.required_number("torque")
+        self._imu_link, self._imu = sensor_named(context, self.required_text("imu_name"))
         # Gazebo's ImuSensor reports orientations relative to the one at loading.
         self._reference = compose(context.link(self._imu_link).pose, self._imu.pose).orientation
         self._odometer = Odometer(context, "odom", "odom", "base_footprint", _COVARIANCE)
@@ -63,6 +61,13 @@ class Kobuki(Plugin):
         context.observe(hertz, self.publish, transforms=self._broadcasts, remembers=True, topics=[
             *self._states.topics, *self._odometer.topics, self._imu_topic])
         self._events.follow(hertz)
+
+    def required_number(self, name: str) -> float:
+        """Return the number of a child element. Raises PluginError if it is not above 0."""
+        text, found = self.required_text(name), self.context.parameters.positive(name, 0.0)
+        if not found:
+            raise PluginError(f"<{name}> must be a number above 0, it is {text!r}")
+        return found
 
     def power(self, on: bool) -> None:
         self._powered = on
@@ -150,15 +155,14 @@ class KobukiEvents:
     """Bumper, cliff and wheel drop events, and the state of all sensors."""
 
     def __init__(self, base: Kobuki, prefix: str) -> None:
-        self._context, p = base.context, base.context.parameters
-        context = self._context
+        context = self._context = base.context
         self._rays = FloorRays(
-            context, {side: sensor_named(context, _read_name(p, f"cliff_sensor_{side}_name"))
+            context, {side: sensor_named(context, base.required_text(f"cliff_sensor_{side}_name"))
                       for side in _SIDES}, self._receive_cliffs)
-        self._edge = _needed_number(p, "cliff_detection_threshold")
-        self._bumper = sensor_named(context, _read_name(p, "bumper_name"))[0]
+        self._edge = base.required_number("cliff_detection_threshold")
+        self._bumper = sensor_named(context, base.required_text("bumper_name"))[0]
         self._drops = {
-            side: sensor_named(context, _read_name(p, f"wheel_drop_{side}_sensor_name"))[0]
+            side: sensor_named(context, base.required_text(f"wheel_drop_{side}_sensor_name"))[0]
             for side in ("left", "right")}
         self._pressed: Dict[str, bool] = dict.fromkeys(_SIDES, False)
         self._over: Dict[str, bool] = dict.fromkeys(_SIDES, False)
@@ -263,18 +267,3 @@ class KobukiEvents:
 def _adc_value(distance: float) -> int:
     """What the base's converter reads at a distance (m), cut to the 16 bits of the message."""
     return int(_READING * math.atan2(_READING_AT, distance)) & 0xFFFF
-
-
-def _read_name(p: Any, name: str) -> str:
-    found: str = p.text(name)
-    if not found:
-        raise PluginError(f"it has no <{name}>")
-    return found
-
-
-def _needed_number(p: Any, name: str) -> float:
-    """A number above 0. Raises PluginError."""
-    text, found = _read_name(p, name), float(p.positive(name, 0.0))
-    if not found:
-        raise PluginError(f"<{name}> must be a number above 0, it is {text!r}")
-    return found

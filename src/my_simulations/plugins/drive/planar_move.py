@@ -10,7 +10,6 @@ from typing import Tuple
 
 from ...geometry import Pose, Twist, rpy_from_quat
 from ..base import Plugin
-from ..parameters import namespace_or
 from ..stepwise_change import StepwiseChange
 from .odometry import Odometer, in_base
 from .wheels import VelocityCommand
@@ -20,8 +19,7 @@ class PlanarMove(Plugin):
     """Moves a model in its own x and y, and about the vertical."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         self._odometer = Odometer(context, p.text("odometryTopic", "odom"),
                                   p.text("odometryFrame", "odom"),
                                   p.text("robotBaseFrame", "base_footprint"))

@@ -5,7 +5,6 @@ Parameters, defaults, topics and laws are those of gazebo_plugins.
 from __future__ import annotations
 
 from ..base import Plugin
-from ..parameters import namespace_or
 from ..stepwise_change import StepwiseChange
 from .odometry import Odometer, in_base
 from .wheels import VelocityCommand
@@ -15,8 +14,7 @@ _CORNERS = ("leftFront", "rightFront", "leftRear", "rightRear")
 
 class SkidSteerDrive(Plugin):
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         self._separation = p.positive("wheelSeparation", 0.4)
         self._radius = p.positive("wheelDiameter", 0.15) / 2.0
         self._torque = p.number("torque", 5.0)

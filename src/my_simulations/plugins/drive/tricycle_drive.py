@@ -15,7 +15,6 @@ from typing import Tuple
 from ...engine.drive_commands import JointServo
 from ...geometry import inverse, transform
 from ..context import Joint
-from ..parameters import namespace_or
 from ..stepwise_change import StepwiseChange
 from .odometry import Odometer, OdometryDrive, WheelCounter
 from .wheels import VelocityCommand
@@ -28,8 +27,7 @@ class TricycleDrive(OdometryDrive):
     """`linear.x` of a command is the speed of the driven wheel, `angular.z` the steering angle."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, context.model))
+        context, p = self.enter_namespace(self.context.model)
         self._radius = p.positive("actuatedWheelDiameter", 0.15) / 2.0
         self._torque = p.number("wheelTorque", 5.0)
         self._acceleration = p.number("wheelAcceleration", 0.0)

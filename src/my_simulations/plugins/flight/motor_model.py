@@ -16,7 +16,6 @@ from ...geometry import ZERO3, Vec3
 from ..base import Plugin
 from ..context import PluginError
 from ..finite_messages import finite_only
-from ..parameters import namespace_or
 
 ACTUATORS = "mav_msgs/Actuators"
 _MOTOR_EFFORT = 1e3   # N m: the motor follows its speed in one step
@@ -30,13 +29,9 @@ class MotorModel(Plugin):
     """
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
-        for name in ("jointName", "linkName", "motorNumber"):
-            if not p.text(name):
-                raise PluginError(f"it has no <{name}>")
-        self._joint, self._link = context.joint(p.text("jointName")), context.link(
-            p.text("linkName"))
+        context, p = self.enter_namespace()
+        joint, link, _ = map(self.required_text, ("jointName", "linkName", "motorNumber"))
+        self._joint, self._link = context.joint(joint), context.link(link)
         self._number = p.integer("motorNumber", 0)
         self._direction = p.choice("turningDirection", _TURNS, -1.0)
         self._kind = p.text("motorType", "velocity")

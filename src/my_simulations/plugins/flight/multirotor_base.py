@@ -12,7 +12,6 @@ from typing import Any, Dict
 from ..base import Plugin
 from ..context import Joint, PluginError
 from ..frames import stamp_message
-from ..parameters import namespace_or
 from .motor_model import ACTUATORS
 
 _ROTOR = re.compile(r"rotor_(\d+)")
@@ -22,8 +21,7 @@ class MultirotorBase(Plugin):
     """Of the rotors whose joints are on `<linkName>` and whose links are called rotor_NUMBER."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         self._base = context.link(p.text("linkName", "base_link")).name
         self._slowdown = p.number("rotorVelocitySlowdownSim", 10.0)
         found: Dict[int, Joint] = {}
@@ -57,8 +55,7 @@ class ControllerInterface(Plugin):
     """From `<commandMotorSpeedSubTopic>` to `<motorSpeedCommandPubTopic>`."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         self._rotors = context.publish(
             p.text("motorSpeedCommandPubTopic", "gazebo/command/motor_speed"), ACTUATORS)
         context.subscribe(p.text("commandMotorSpeedSubTopic", "command/motor_speed"), ACTUATORS,

@@ -19,7 +19,6 @@ from ..base import Plugin
 from ..context import CallHandle, Context, PluginError
 from ..finite_messages import finite_only
 from ..frames import stamp_message
-from ..parameters import namespace_or
 from .body_wrench import body_twist, fill_wrench, push_at_origin
 
 _PWM_STEPS = 255
@@ -99,8 +98,7 @@ class QuadrotorPropulsion(Plugin):
     """Acts on the first link of the model."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         self._link = context.link("")
         namespace = p.text("paramNamespace", "quadrotor_propulsion")
         self._constants = MotorConstants(*model_parameters(
@@ -237,8 +235,7 @@ class QuadrotorAerodynamics(Plugin):
     """
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         self._link = context.link("")
         across, along, turn_across, turn_along = model_parameters(
             context, p.text("paramNamespace", "quadrotor_aerodynamics"),

@@ -25,7 +25,6 @@ from ...geometry import (
 from ..base import Plugin
 from ..context import CallHandle
 from ..finite_messages import finite_only
-from ..parameters import namespace_or
 from ..sensors.hector_errors import rate_of
 from .body_wrench import NO_WRENCH, fill_wrench, hold_wrench
 from .filtered_pid import FilteredPid
@@ -38,8 +37,7 @@ class QuadrotorSimpleController(Plugin):
     """Flies the link `<bodyName>`, or the model's first one."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         self._link = context.link(p.text("bodyName"))
         self._most_force = p.number("maxForce", -1.0)
         self._auto_engages = p.flag("autoEngage", True)

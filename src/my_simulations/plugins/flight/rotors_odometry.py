@@ -33,7 +33,6 @@ from ..base import Plugin
 from ..context import Link, Publication
 from ..drive.odometry import diagonal_covariance
 from ..frames import stamp_message
-from ..parameters import namespace_or
 
 _WORLD = "world"
 _QUANTITIES = ("Position", "Quaternion", "LinearVelocity", "AngularVelocity")
@@ -46,8 +45,7 @@ class RotorsOdometry(Plugin):
     """Publishes five types of messages and a transform."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         self._link = context.link(p.text("linkName", "odometry_sensor_link"))
         self._frames = (p.text("parentFrameId", _WORLD), p.text("childFrameId", "odometry_sensor"))
         self._parent: Optional[Link] = None if self._frames[0] == _WORLD \

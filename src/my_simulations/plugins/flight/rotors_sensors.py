@@ -21,7 +21,6 @@ from ..base import Plugin
 from ..context import PluginError
 from ..frames import stamp_message
 from ..noise import WhiteNoise
-from ..parameters import namespace_or
 from ..sensors.imu import Imu
 from ..sensors.rays import SampledNoise
 
@@ -38,11 +37,8 @@ class RotorsImu(Imu):
     """sensor_msgs/Imu of `<linkName>`, with white noise and biases that wander."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
-        if not p.text("linkName"):
-            raise PluginError("it has no <linkName>")
-        self._link = context.link(p.text("linkName"))
+        context, p = self.enter_namespace()
+        self._link = context.link(self.required_text("linkName"))
         gyroscope = (p.number("gyroscopeNoiseDensity", 2.0 * 35.0 / 3600.0 * _DEGREE),
                      p.number("gyroscopeTurnOnBiasSigma", 0.5 * _DEGREE),
                      p.number("gyroscopeBiasRandomWalk", 2.0 * 4.0 / 3600.0 * _DEGREE),
@@ -93,8 +89,7 @@ class RotorsMagnetometer(Plugin):
     """sensor_msgs/MagneticField in the axes of `<linkName>`; the world's x, y, z are N, E, D."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         self._link = context.link(p.text("linkName"))
         who = f"{context.model}::{self._link.name}"
         width, self._stddev = p.vector("noiseUniformInitialBias"), p.vector("noiseNormal")
@@ -124,8 +119,7 @@ class RotorsPressure(Plugin):
     """sensor_msgs/FluidPressure at the height of the model."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         self._frame = context.link(p.text("linkName")).name
         self._reference = p.number("referenceAltitude", 500.0)
         self._variance = max(0.0, p.number("pressureVariance", 0.0))
@@ -156,10 +150,9 @@ class RotorsGps(Plugin):
     """sensor_msgs/NavSatFix and the velocity of a `<sensor type="gps">`."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
+        context, p = self.enter_namespace()
         if context.sensor is None:
             raise PluginError("it must be in a <sensor> of type gps")
-        context.use_namespace(namespace_or(p, ""))
         self._link, self._mount = context.link(context.sensor_link), context.sensor.pose
         self._frame = p.text("linkName", self._link.name)
         block = context.sensor.gps or GpsBlock()

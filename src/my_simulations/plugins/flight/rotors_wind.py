@@ -12,7 +12,6 @@ from ...geometry import Vec3, add, scale, unit
 from ..base import Plugin
 from ..context import CallHandle, PluginError, Publication
 from ..frames import stamp_message
-from ..parameters import namespace_or
 from .body_wrench import fill_wrench
 
 
@@ -20,8 +19,7 @@ class RotorsWind(Plugin):
     """Acts on `<linkName>` at `<xyzOffset>`."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         self._link = context.link(p.text("linkName", "base_link"))
         self._offset, self._frame = p.vector("xyzOffset"), p.text("frameId", "world")
         if p.flag("useCustomStaticWindField", False):

@@ -15,7 +15,6 @@ from ...geometry import ZERO3, Vec3, conjugate, norm, rotate, rpy_from_quat, sca
 from ..base import Plugin
 from ..context import CallHandle
 from ..finite_messages import finite_only
-from ..parameters import namespace_or
 from .body_wrench import NO_WRENCH, hold_wrench
 from .filtered_pid import FilteredPid
 from .quadrotor_simple_controller import load_factor, to_heading
@@ -34,7 +33,7 @@ class SjtuDrone(Plugin):
     """
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
+        context, p = self.enter_namespace()
         self._link = context.link(p.text("bodyName"))
         self._most_force = p.number("maxForce", -1.0)
         self._noise = (p.number("motionSmallNoise", 0.0), p.number("motionDriftNoise", 0.0))
@@ -44,7 +43,8 @@ class SjtuDrone(Plugin):
                 "rollpitch", "rollpitch", "yaw", "velocityXY", "velocityXY", "velocityZ",
                 "positionXY", "positionXY", "positionZ")]
         own = p.text("rosNamespace")
-        context.use_namespace(own or namespace_or(p, ""))
+        if own:
+            context.use_namespace(own)
         place = "" if own else "drone/"
         self._poses = context.publish(f"{place}gt_pose", "geometry_msgs/Pose", 10)
         self._velocities = context.publish(f"{place}gt_vel", "geometry_msgs/Twist", 10)

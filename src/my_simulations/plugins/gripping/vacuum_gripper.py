@@ -10,8 +10,7 @@ from typing import List, Optional, Tuple
 
 from ...geometry import norm, subtract
 from ..base import Plugin
-from ..context import CallHandle, PluginError
-from ..parameters import namespace_or
+from ..context import CallHandle
 
 _REACH = 0.05   # m, between the origins of the links
 _HERTZ = 100.0
@@ -21,14 +20,12 @@ class VacuumGripper(Plugin):
     """The link `<bodyName>`, with services `on` and `off`; the topic reports whether it holds."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
-        if not p.text("topicName"):
-            raise PluginError("it has no <topicName>")
+        context, p = self.enter_namespace()
+        topic = self.required_text("topicName")
         self._link = context.link(p.text("bodyName"))
         self._on = False
         self._held: List[Tuple[str, str]] = []
-        self._topic = context.publish(p.text("topicName"), "std_msgs/Bool")
+        self._topic = context.publish(topic, "std_msgs/Bool")
         context.serve("on", "std_srvs/Empty", lambda request, response: self._switch(True))
         context.serve("off", "std_srvs/Empty", lambda request, response: self._switch(False))
         self._search: Optional[CallHandle] = None   # while it is on

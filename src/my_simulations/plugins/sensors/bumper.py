@@ -18,17 +18,15 @@ from ...geometry import Vec3, add, conjugate, cross, rotate, scale, subtract
 from ..base import Plugin
 from ..context import PluginError
 from ..frames import add_tf_prefix, stamp_message
-from ..parameters import namespace_or
 
 
 class Bumper(Plugin):
     """Publishes while there are subscribers; without a contact `states` is empty."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
+        context, p = self.enter_namespace()
         if context.sensor is None:
             raise PluginError("it must be in a <sensor> of type contact")
-        context.use_namespace(namespace_or(p, ""))
         self._frame = add_tf_prefix(context, p.text("frameName", "world"))
         self._link = context.link(context.sensor_link)
         block = context.sensor.contact

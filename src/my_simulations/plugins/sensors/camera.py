@@ -10,7 +10,7 @@ from typing import Any, Callable, List, Type
 
 from ..base import Plugin
 from ..context import Context
-from .camera_parameters import ImagerRate, enter_namespace, topics_of
+from .camera_parameters import ImagerRate, topics_of
 from .picture_stream import PictureStream, blocks_of
 
 _TRIGGERS = 100
@@ -26,10 +26,9 @@ class Camera(Plugin):
     stream_type: Type[PictureStream] = PictureStream
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
+        context, p = self.enter_namespace(empty_means_model=True)
         block, sensor = blocks_of(context, "camera")[0], context.sensor
         assert sensor is not None
-        enter_namespace(context)
         self._stream = self.stream_type(context, sensor, context.sensor_link, block,
                                         topics_of(context), p.number("hackBaseline", 0.0),
                                         p.flag("borderCrop", True))
@@ -138,10 +137,9 @@ class MultiCamera(Plugin):
     """Several cameras that look at the same time; a pair has `left` and `right` in its names."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
+        context, p = self.enter_namespace(empty_means_model=True)
         blocks, sensor = blocks_of(context, "multicamera"), context.sensor
         assert sensor is not None
-        enter_namespace(context)
         self._streams = []
         for block in blocks:
             side = next((word for word in ("left", "right") if word in block.name), "")

@@ -16,7 +16,7 @@ from ...description.sensor import Camera as CameraBlock
 from ...sensing.api import CameraSpec, Distortion, WideLens
 from ..context import Context, PluginError, Publication
 from ..frames import add_tf_prefix
-from ..parameters import lowest_rate, namespace_or
+from ..parameters import lowest_rate
 from ..reconfigure import Option, Reconfigure, Value
 
 USUAL_RATE = 30.0
@@ -39,12 +39,6 @@ class CameraTopics:
 
     def named(self, name: str) -> str:
         return name if name.startswith("/") or not self.base else f"{self.base}/{name}"
-
-
-def enter_namespace(context: Context) -> None:
-    """`<robotNamespace>`: missing means the node's, empty the model's name."""
-    p = context.parameters
-    context.use_namespace(namespace_or(p, context.model if "robotNamespace" in p else ""))
 
 
 def topics_of(context: Context, suffix: str = "") -> CameraTopics:

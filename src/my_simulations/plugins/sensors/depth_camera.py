@@ -12,7 +12,7 @@ from typing import Any, List, Optional
 from ...sensing.api import DEPTH, RGB
 from ..base import Plugin
 from ..context import Context, Publication
-from .camera_parameters import CameraTopics, ImagerRate, enter_namespace, topics_of
+from .camera_parameters import CameraTopics, ImagerRate, topics_of
 from .image_messages import DepthGeometry, LazyValue, cloud_message, header, make_image
 from .picture_stream import PictureStream, blocks_of
 
@@ -102,10 +102,9 @@ class DepthCamera(Plugin):
     """Default of `<pointCloudCutoffMax>`, m."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
+        context, p = self.enter_namespace(empty_means_model=True)
         block, sensor = blocks_of(context, "depth")[0], context.sensor
         assert sensor is not None
-        enter_namespace(context)
         topics = topics_of(context)
         self._colors = PictureStream(context, sensor, context.sensor_link, block, topics,
                                      p.number("hackBaseline", 0.0), p.flag("borderCrop", True))

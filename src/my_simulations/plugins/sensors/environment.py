@@ -17,7 +17,6 @@ from ...sensing.sensor_models import measure_altitude, measure_magnetic_field, v
 from ..base import Plugin
 from ..context import PluginError, Publication
 from ..frames import add_tf_prefix
-from ..parameters import namespace_or
 from .hector import make_vector
 from .image_messages import header
 from .rays import SampledNoise
@@ -31,10 +30,9 @@ class _SensorPlugin(Plugin):
     block: Any = None
 
     def _begin(self, kind: str) -> None:
-        context, p = self.context, self.context.parameters
+        context, p = self.enter_namespace(self.context.model)
         if context.sensor is None:
             raise PluginError(f"it must be in a <sensor> of type {kind}")
-        context.use_namespace(namespace_or(p, context.model))
         self._link, self._mount = context.link(context.sensor_link), context.sensor.pose
         self._frame = add_tf_prefix(context, p.text("frameName") or context.sensor_link)
         self.block = getattr(context.sensor, kind)

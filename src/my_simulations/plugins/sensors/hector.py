@@ -12,7 +12,6 @@ from ...description.surroundings import SphericalCoordinates
 from ...geometry import Vec3, conjugate, rotate
 from ..base import Plugin
 from ..context import Link, PluginError, Publication
-from ..parameters import namespace_or
 from .hector_errors import SensorErrors, rate_of
 from .image_messages import header
 from .rays import RayPlugin
@@ -31,9 +30,8 @@ class _LinkSensor(Plugin):
     _link: Link
 
     def _begin(self, frame: str = "") -> None:
-        context, p = self.context, self.context.parameters
+        context, p = self.enter_namespace()
         self._all_errors: List[SensorErrors] = []
-        context.use_namespace(namespace_or(p, ""))
         self._link = context.link(p.text("bodyName"))
         self._frame = (p.text("frameId") or frame or self._link.name).lstrip("/")
 
@@ -216,9 +214,8 @@ class Sonar(RayPlugin):
     """sensor_msgs/Range of a ray sensor: the nearest of all rays."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
+        context, p = self.enter_namespace()
         self.read_ray_element()
-        context.use_namespace(namespace_or(p, ""))
         self._frame = (p.text("frameId") or "/sonar_link").lstrip("/")
         flat, high = self._ray.horizontal, self._ray.vertical
         wide = [abs(one.max_angle - one.min_angle) for one in (flat, high)]

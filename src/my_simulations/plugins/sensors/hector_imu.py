@@ -9,7 +9,6 @@ import math
 from typing import Any, List
 
 from ...geometry import Pose, Quat, Vec3, multiply, normalised, rotate
-from ..parameters import namespace_or
 from .hector_errors import SensorErrors, rate_of
 from .image_messages import header
 from .imu import Imu
@@ -19,8 +18,7 @@ class HectorImu(Imu):
     """On the link `<bodyName>`, or the model's own."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         self._link = context.link(p.text("bodyName"))
         self._mount = Pose(orientation=p.turn("rpyOffset"))
         self._frame = (p.text("frameId") or self._link.name).lstrip("/")

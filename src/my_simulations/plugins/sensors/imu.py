@@ -15,7 +15,7 @@ from ..base import Plugin
 from ..context import Link, PluginError
 from ..frames import stamp_message
 from ..noise import WhiteNoise
-from ..parameters import lowest_rate, namespace_or
+from ..parameters import lowest_rate
 from .rays import SampledNoise
 
 
@@ -91,11 +91,8 @@ class ModelImu(Imu):
     """On the link `<bodyName>`."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
-        body = p.text("bodyName")
-        if not body:
-            raise PluginError("it has no <bodyName>")
+        context, p = self.enter_namespace()
+        body = self.required_text("bodyName")
         self._link = context.link(body)
         self._mount = Pose(p.vector("xyzOffset"))
         self._begin(p.text("topicName", "/default_imu"), p.text("frameName", body), body)
@@ -116,9 +113,7 @@ class SensorImu(Imu):
             raise PluginError("it must be in a <sensor> of type imu")
         # An empty element, such as xacro leaves, is the root (GazeboRosImuSensor::LoadParameters).
         context.use_namespace(p.text("robotNamespace", f"/{context.model}") or "/")
-        frame = p.text("frameName")
-        if not frame:
-            raise PluginError("it has no <frameName>")
+        frame = self.required_text("frameName")
         self._link, self._mount = context.link(context.sensor_link), context.sensor.pose
         if p.flag("initialOrientationAsReference", False):
             self._reference = compose(self._link.pose, self._mount).orientation

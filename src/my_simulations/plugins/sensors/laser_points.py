@@ -15,7 +15,6 @@ from typing import Any, Optional
 from ...description.sensor import Noise as NoiseSpec
 from ...sensing.noise import GAUSSIAN, Noise
 from ..frames import add_tf_prefix, resolve_frame, stamp_message
-from ..parameters import namespace_or
 from .image_messages import FLOAT32, UINT16, header, point_field
 from .rays import RayPlugin, SampledNoise
 
@@ -30,9 +29,8 @@ class Points(RayPlugin):
     message_type = ""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
+        context, p = self.enter_namespace()
         self.read_ray_element()
-        context.use_namespace(namespace_or(p, ""))
         self._range_noise = SampledNoise(context, self._ray.noise, "range")
         self._noise = Noise(NoiseSpec(GAUSSIAN, stddev=p.number("gaussianNoise", 0.0)),
                             context.seed, f"{context.model}::{context.sensor_link}::points")
@@ -166,10 +164,8 @@ class Laser(RayPlugin):
     """Publishes scans while there are subscribers."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
+        context, p = self.enter_namespace(empty_means_model=True)
         self.read_ray_element()
-        context.use_namespace(namespace_or(
-            p, context.model if "robotNamespace" in p else ""))
         self._frame = add_tf_prefix(context, p.text("frameName", "/world"))
         self._noise = SampledNoise(context, self._ray.noise, "range")
         self._topic = context.publish(p.text("topicName", "/world"), "sensor_msgs/LaserScan")

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..frames import add_tf_prefix, stamp_message
 from ..noise import WhiteNoise
-from ..parameters import lowest_rate, namespace_or
+from ..parameters import lowest_rate
 from .rays import RayPlugin
 
 _ULTRASOUND, _INFRARED = 0, 1  # of sensor_msgs/Range
@@ -18,9 +18,8 @@ class Range(RayPlugin):
     """Publishes while there are subscribers; without a hit, the maximum range."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
+        context, p = self.enter_namespace()
         self.read_ray_element()
-        context.use_namespace(namespace_or(p, ""))
         self._frame = add_tf_prefix(context, p.text("frameName", "/world"))
         self._kind = _ULTRASOUND if p.text("radiation", "ultrasound") == "ultrasound" \
             else _INFRARED

@@ -11,7 +11,6 @@ from typing import Any, Dict, Type
 from ..base import Plugin
 from ..context import PluginError
 from ..frames import stamp_message
-from ..parameters import namespace_or
 from .image_messages import FLOAT32, point_field
 from .laser_points import BlockLaser, Laser, Points
 from .rays import RayPlugin
@@ -51,9 +50,8 @@ class RangeOutput(RayPlugin):
     """sensor_msgs/Range of the nearest of all rays."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
+        context, p = self.enter_namespace()
         self.read_ray_element()
-        context.use_namespace(namespace_or(p, ""))
         self._frame = p.text("frameName", "/world").lstrip("/")
         self._kind = _INFRARED if p.text("radiationType") in ("infrared", "infared") \
             else _ULTRASOUND

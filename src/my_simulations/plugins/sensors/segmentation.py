@@ -12,7 +12,7 @@ from typing import Any, Dict, List
 from ...sensing.api import LABELS, NO_ROW
 from ..base import Plugin
 from ..context import View
-from .camera_parameters import Calibration, enter_namespace, rate_of, spec_of, topics_of
+from .camera_parameters import Calibration, rate_of, spec_of, topics_of
 from .image_messages import header, make_image
 from .picture_stream import blocks_of, place_of
 
@@ -21,10 +21,9 @@ class SegmentationCamera(Plugin):
     """Image of numbers, CameraInfo, names of the numbers."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
+        context, p = self.enter_namespace(empty_means_model=True)
         block, sensor = blocks_of(context, "camera")[0], context.sensor
         assert sensor is not None
-        enter_namespace(context)
         self._topics = topics = topics_of(context)
         spec = spec_of(context, block, p.flag("borderCrop", True))
         self._calibration = Calibration(context, block, spec, 0.0)

@@ -12,23 +12,18 @@ from typing import Optional, Tuple
 from ...geometry import Quat, Vec3, conjugate, multiply, rotate, scale, subtract
 from ...sensing.sensor_models import velocity_at
 from ..base import Plugin
-from ..context import PluginError
 from ..frames import add_tf_prefix, stamp_message
-from ..parameters import namespace_or
 
 
 class F3d(Plugin):
     """Publishes after each step while there are subscribers."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
-        for name in ("bodyName", "topicName"):
-            if not p.text(name):
-                raise PluginError(f"it has no <{name}>")
-        self._link = context.link(p.text("bodyName"))
+        context, p = self.enter_namespace()
+        body, topic = map(self.required_text, ("bodyName", "topicName"))
+        self._link = context.link(body)
         self._frame = add_tf_prefix(context, p.text("frameName", "world"))
-        self._topic = context.publish(p.text("topicName"), "geometry_msgs/WrenchStamped")
+        self._topic = context.publish(topic, "geometry_msgs/WrenchStamped")
         self.reset()
         context.observe(0.0, self.update, [self._topic], resume=self._resume)
 

@@ -5,20 +5,15 @@ from typing import Any
 
 from ...geometry import ZERO3, Vec3
 from ..base import Plugin
-from ..context import PluginError
 from ..finite_messages import finite_only
-from ..parameters import namespace_or
 
 
 class Force(Plugin):
     """The last geometry_msgs/Wrench acts in every step, world axes, at the centre of mass."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
-        topic = p.text("topicName")
-        if not topic:
-            raise PluginError("it has no <topicName>")
+        context, p = self.enter_namespace()
+        topic = self.required_text("topicName")
         self._body = context.link(p.text("bodyName")).name
         self._force: Vec3 = ZERO3
         self._torque: Vec3 = ZERO3

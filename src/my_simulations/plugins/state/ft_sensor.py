@@ -15,7 +15,6 @@ from ..base import Plugin
 from ..context import PluginError
 from ..frames import add_tf_prefix, stamp_message
 from ..noise import WhiteNoise
-from ..parameters import namespace_or
 from ..sensors.rays import SampledNoise
 
 
@@ -23,12 +22,10 @@ class FtSensor(Plugin):
     """Publishes while there are subscribers."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
-        self._name = p.text("jointName") or context.sensor_joint
-        for what, value in (("jointName", self._name), ("topicName", p.text("topicName"))):
-            if not value:
-                raise PluginError(f"it has no <{what}>")
+        context, p = self.enter_namespace()
+        self._name = context.sensor_joint if context.sensor_joint and not p.text("jointName") \
+            else self.required_text("jointName")
+        topic = self.required_text("topicName")
         sensor = context.sensor
         self._block: Optional[ForceTorque] = sensor.force_torque if sensor is not None else None
         self._joint = self._described()
@@ -39,7 +36,7 @@ class FtSensor(Plugin):
                        for kind in ("force", "torque") for axis in "xyz"
                        ] if self._block is not None else []
         self._frame = add_tf_prefix(context, self._frame_name())
-        self._topic = context.publish(p.text("topicName"), "geometry_msgs/WrenchStamped")
+        self._topic = context.publish(topic, "geometry_msgs/WrenchStamped")
         context.joint_wrench(self._name)
         context.observe(p.number("updateRate", 0.0) or (
             sensor.update_rate if sensor is not None else 0.0), self.update, [self._topic],

@@ -11,8 +11,7 @@ from typing import Optional
 from ...engine.wrench_laws import PoseSpring
 from ...geometry import ZERO3, Pose, scale
 from ..base import Plugin
-from ..context import CallHandle, PluginError
-from ..parameters import namespace_or
+from ..context import CallHandle
 from ..transforms import Transforms
 
 
@@ -20,12 +19,8 @@ class HandOfGod(Plugin):
     """Pulls the link `<linkName>`; only changes of the wanted pose cost a synchronization."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
-        name = p.text("linkName")
-        if not name:
-            raise PluginError("it has no <linkName>")
-        self._link = context.link(name)
+        context, p = self.enter_namespace()
+        self._link = context.link(self.required_text("linkName"))
         self._frame = p.text("frameId", "hog")
         self._stiffness = (max(0.0, p.number("kl", 200.0)), max(0.0, p.number("ka", 200.0)))
         inertial = self._link.inertial

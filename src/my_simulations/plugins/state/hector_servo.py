@@ -15,7 +15,6 @@ from ..base import Plugin
 from ..context import PluginError
 from ..finite_messages import finite_only
 from ..frames import stamp_message
-from ..parameters import namespace_or
 from ..transforms import Transforms
 
 _BASE, _LEVEL = "base_link", "base_stabilized"
@@ -28,8 +27,7 @@ class HectorServo(Plugin):
     """Follows the orientation in the last geometry_msgs/QuaternionStamped."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         names, axes = self._servos()
         self._joints = [context.joint(name) for name in names]
         if axes not in (*_X_FIRST, *_Z_FIRST):

@@ -13,7 +13,6 @@ from ...geometry import Pose, compose, inverse, normalised, pose_is_finite
 from ..base import Plugin
 from ..context import CallHandle, Joint, Link, PluginError
 from ..finite_messages import is_all_finite
-from ..parameters import namespace_or
 
 _WORLD = ("world", "map")
 _FIRM = 1e5  # N m or N: what holds joints between two points
@@ -23,8 +22,7 @@ class JointPoseTrajectory(Plugin):
     """Plays trajectory_msgs/JointTrajectory; another one replaces what is left of the first."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         self._joints: List[Joint] = []
         self._points: List[Tuple[int, List[float]]] = []
         self._anchor: "Link | None" = None

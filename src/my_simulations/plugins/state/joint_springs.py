@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from ...engine.drive_commands import JointServo, PidGains
 from ..base import Plugin
-from ..context import PluginError
 
 _SUSPENSIONS = ("left_diff_unit_joint", "right_diff_unit_joint")
 
@@ -24,10 +23,8 @@ class Differential(Plugin):
 
     def load(self) -> None:
         p = self.context.parameters
-        for name in ("jointA", "jointB", "forceConstant"):
-            if not p.text(name):
-                raise PluginError(f"it has no <{name}>")
-        self._one, self._other = (self.context.joint(p.text(name)) for name in ("jointA", "jointB"))
+        one, other, _ = map(self.required_text, ("jointA", "jointB", "forceConstant"))
+        self._one, self._other = self.context.joint(one), self.context.joint(other)
         self._constant = p.number("forceConstant", 0.0)
         self.context.every(0.0, self.update)
 
@@ -55,8 +52,5 @@ class MimicJoint(Plugin):
 
     def load(self) -> None:
         p = self.context.parameters
-        leader, follower = p.text("joint"), p.text("mimicJoint")
-        for name, value in (("joint", leader), ("mimicJoint", follower)):
-            if not value:
-                raise PluginError(f"it has no <{name}>")
+        leader, follower = self.required_text("joint"), self.required_text("mimicJoint")
         self.context.mimic(follower, leader, p.number("multiplier", 1.0), p.number("offset", 0.0))

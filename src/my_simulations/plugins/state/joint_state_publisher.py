@@ -6,7 +6,6 @@ from typing import List
 from ..base import Plugin
 from ..context import Joint, PluginError
 from ..frames import stamp_message
-from ..parameters import namespace_or
 
 
 class JointStatePublisher(Plugin):
@@ -14,8 +13,7 @@ class JointStatePublisher(Plugin):
 
     def load(self) -> None:
         """Find the joints of `<jointName>`, a list with commas."""
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, context.model))
+        context, p = self.enter_namespace(self.context.model)
         names = [name.strip() for name in p.text("jointName").split(",") if name.strip()]
         if not names:
             context.warn("it has no <jointName>, and publishes empty joint_states")

@@ -12,7 +12,6 @@ from ..base import Plugin
 from ..context import Link, PluginError
 from ..frames import add_tf_prefix, stamp_message
 from ..noise import WhiteNoise
-from ..parameters import namespace_or
 
 _WORLD = ("", "world", "/world", "map", "/map")
 
@@ -21,8 +20,7 @@ class P3d(Plugin):
     """Publishes nav_msgs/Odometry of a link while there are subscribers."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         if "topicName" not in p:   # an empty one is legal: nothing is published
             raise PluginError("it has no <topicName>")
         name = p.text("bodyName")

@@ -13,7 +13,6 @@ from typing import Any, Tuple
 from ..base import Plugin
 from ..context import PluginError
 from ..frames import stamp_message
-from ..parameters import namespace_or
 
 _AC_PRESENT = 4                                 # chargers
 _UNKNOWN_S = 65535                              # time remaining without a current
@@ -23,8 +22,7 @@ class PowerMonitor(Plugin):
     """Publishes pr2_msgs/PowerState."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         self._capacity = p.positive("fullChargeCapacity", 80.0)        # A h
         self._discharge = p.number("dischargeRate", -500.0)            # W
         self._charging = p.number("chargeRate", 1000.0)                # W

@@ -16,7 +16,6 @@ from typing import List, Tuple
 
 from ...geometry import Twist, Vec3
 from ..base import Plugin
-from ..context import PluginError
 from ..noise import WhiteNoise
 
 
@@ -25,9 +24,7 @@ class RandomVelocity(Plugin):
 
     def load(self) -> None:
         context, p = self.context, self.context.parameters
-        if not p.text("link"):
-            raise PluginError("it has no <link>")
-        context.link(p.text("link"))
+        context.link(self.required_text("link"))
         self._initial = p.vector("initial_velocity")
         self._speed = p.number("velocity_factor", 1.0)
         self._period_ns = round(p.number("update_period", 10.0) * 1e9)

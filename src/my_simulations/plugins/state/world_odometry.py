@@ -36,7 +36,6 @@ from ..context import Link, PluginError
 from ..drive.odometry import diagonal_covariance
 from ..frames import add_tf_prefix, stamp_message
 from ..noise import WhiteNoise
-from ..parameters import namespace_or
 
 _WORLD = ("", "world", "/world", "map", "/map")
 _ROBOTNIK_VARIANCE = 0.1
@@ -46,8 +45,7 @@ class PalWorldOdometry(Plugin):
     """Publishes nav_msgs/Odometry of `<bodyName>` in the world."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         self._frame = p.text("frameName", "world")
         self._link = context.link(p.text("bodyName", self._frame))
         self._noise = WhiteNoise(context.seed, f"{context.model}::{self._link.name}::odometry",
@@ -77,8 +75,7 @@ class RobotnikGroundTruthOdometry(Plugin):
     """Publishes nav_msgs/Odometry of `<bodyName>`, and with `<broadcastTF>` its transform."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         for name in ("bodyName", "topicName"):
             if name not in p:
                 raise PluginError(f"it has no <{name}>")

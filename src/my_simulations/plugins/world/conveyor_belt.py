@@ -11,7 +11,6 @@ from typing import Any
 from ..base import Plugin
 from ..context import PluginError
 from ..moving_surface import MovingSurface
-from ..parameters import namespace_or
 
 PACKAGES = ("osrf_gear", "nist_gear", "gazebo_conveyor", "conveyor_gazebo")
 """Packages with the messages of the plugin, which each copy of it has renamed."""
@@ -24,8 +23,9 @@ class ConveyorBelt(Plugin):
     """Moves the joint `<joint>`, `belt_joint` by default."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(p.text("robot_namespace") or namespace_or(p, ""))
+        context, p = self.enter_namespace()
+        if p.text("robot_namespace"):
+            context.use_namespace(p.text("robot_namespace"))
         self._surface = MovingSurface(
             context, (p.text("joint") or "belt_joint").rpartition("::")[2])
         self._fastest = p.number("max_velocity", p.number("max_belt_linear_vel", _FASTEST))

@@ -27,10 +27,9 @@ from ...geometry import (
     transform,
 )
 from ..base import Plugin
-from ..context import PluginError
 from ..flight.body_wrench import fill_wrench
 from ..frames import stamp_message
-from ..parameters import Parameters, namespace_or
+from ..parameters import Parameters
 
 LIBRARY = "libgazebo_dipole_magnet.so"
 _MU0_BY_4_PI = 1e-7   # T m / A
@@ -77,11 +76,8 @@ class DipoleMagnet(Plugin):
     """The magnet `<bodyName>`; with `<calculate>` false it only acts on others."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
-        if not p.text("bodyName"):
-            raise PluginError("it has no <bodyName>")
-        self._link = context.link(p.text("bodyName"))
+        context, p = self.enter_namespace()
+        self._link = context.link(self.required_text("bodyName"))
         self._magnet = magnet_of(self._link.name, p)
         self._known: Tuple[str, ...] = ()
         self._others: List[Magnet] = []

@@ -11,8 +11,7 @@ from typing import Any, Callable, List
 
 from ...engine.drive_commands import JointServo, PidGains
 from ..base import Plugin
-from ..context import Joint, PluginError
-from ..parameters import namespace_or
+from ..context import Joint
 from ..stepwise_change import StepwiseChange
 from ..time_out import TimeOut
 
@@ -29,8 +28,7 @@ class Elevator(Plugin):
     """Drives the joints `<lift_joint>` and `<door_joint>`."""
 
     def load(self) -> None:
-        context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context, p = self.enter_namespace()
         self._lift, self._door = self._joint("lift_joint"), self._joint("door_joint")
         self._height = p.number("floor_height", 3.0)
         self._wait = TimeOut(context, p.number("door_wait_time", 5.0))
@@ -39,10 +37,7 @@ class Elevator(Plugin):
         self.reset()
 
     def _joint(self, name: str) -> Joint:
-        found = self.context.parameters.text(name)
-        if not found:
-            raise PluginError(f"it has no <{name}>")
-        return self.context.joint(found.rpartition("::")[2])
+        return self.context.joint(self.required_text(name).rpartition("::")[2])
 
     def reset(self) -> None:
         """On the ground, with a closed door."""

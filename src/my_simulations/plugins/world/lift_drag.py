@@ -20,9 +20,7 @@ class LiftDrag(Plugin):
 
     def load(self) -> None:
         context, p = self.context, self.context.parameters
-        if not p.text("link_name"):
-            raise PluginError("it has no <link_name>")
-        self._link = context.link(p.text("link_name"))
+        self._link = context.link(self.required_text("link_name"))
         stall = p.number("alpha_stall", math.pi / 2.0)
         self._wing = Wing(
             p.number("air_density", 1.2041), p.number("area", 1.0), p.number("a0", 0.0), stall,
