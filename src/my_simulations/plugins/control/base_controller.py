@@ -13,10 +13,10 @@ from typing import Any, Deque, List, Optional, Tuple
 from ...description.model import Joint as JointSpec
 from ...description.shapes import Cylinder, Sphere
 from ...geometry import Vec3, transform
-from ...geometry_messages import fill_pose
 from ..context import CallHandle, PluginError, Publication
-from ..drive.odometry import diagonal_covariance, planar_pose
+from ..drive.odometry import planar_pose, planar_twist
 from ..frames import stamp_message
+from ..standard_messages import diagonal_covariance, odometry_message
 from ..stepwise_change import StepwiseChange
 from ..time_out import TimeOut
 from .controller import Controller
@@ -107,7 +107,7 @@ class BaseController(Controller):
         self._frames = (s.text("odom_frame_id", "odom"), s.text("base_frame_id", "base_link"))
         self.broadcasts = s.flag("enable_odom_tf", True)
         self._covariances = [
-            diagonal_covariance(tuple(s.numbers(f"{what}_covariance_diagonal", 6, [0.0] * 6)))
+            diagonal_covariance(s.numbers(f"{what}_covariance_diagonal", 6, [0.0] * 6))
             for what in ("pose", "twist")]
         self._odom = self.publish("odom", "nav_msgs/Odometry", 100)
         self._limited = self.publish("cmd_vel_out", "geometry_msgs/TwistStamped", 100) \
@@ -213,13 +213,8 @@ class BaseController(Controller):
             self._odom.publish(self._odometry())
 
     def _odometry(self) -> Any:
-        message = stamp_message(self.context, "nav_msgs/Odometry")
-        message.header.frame_id, message.child_frame_id = self._frames
-        fill_pose(message.pose.pose, planar_pose(*self._pose))
-        message.pose.covariance, message.twist.covariance = map(list, self._covariances)
-        twist = message.twist.twist
-        twist.linear.x, twist.linear.y, twist.angular.z = self.velocity
-        return message
+        return odometry_message(self.context, self._frames, planar_pose(*self._pose),
+                                planar_twist(self.velocity), self._covariances)
 
     # -- geometry ----------------------------------------------------------------------------------
 

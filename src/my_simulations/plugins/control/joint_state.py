@@ -5,6 +5,7 @@ from typing import Any, List, Sequence, Tuple, Union
 
 from ..context import Context, Joint, PluginError
 from ..frames import stamp_message
+from ..standard_messages import joint_state_message
 from .controller import Controller
 from .hardware import EFFORT, POSITION, VELOCITY, Hardware, HardwareJoint
 
@@ -15,12 +16,8 @@ _UPDATE_HZ = 100.0                      # without a rate
 def make_joint_state(context: Context, hardware: Hardware,
                      joints: Sequence[Union[Joint, HardwareJoint]]) -> Any:
     """Make a sensor_msgs/JointState with the present positions, rates and efforts."""
-    message = stamp_message(context, "sensor_msgs/JointState")
-    message.name = [joint.name for joint in joints]
-    message.position = [joint.position for joint in joints]
-    message.velocity = [joint.velocity for joint in joints]
-    message.effort = list(hardware.efforts(message.name))
-    return message
+    return joint_state_message(context, joints,
+                               efforts=hardware.efforts([joint.name for joint in joints]))
 
 
 class JointStateController(Controller):

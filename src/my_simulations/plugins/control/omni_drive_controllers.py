@@ -10,10 +10,10 @@ from __future__ import annotations
 import math
 from typing import Any, List, Optional
 
-from ...geometry_messages import fill_pose
 from ..context import PluginError, Publication
-from ..drive.odometry import diagonal_covariance, planar_pose
+from ..drive.odometry import planar_pose, planar_twist
 from ..frames import stamp_message
+from ..standard_messages import diagonal_covariance, odometry_message
 from ..stepwise_change import StepwiseChange
 from ..time_out import TimeOut
 from .base_controller import STANDING, Planar, along_arc
@@ -181,15 +181,9 @@ class OdometryController(Controller):
         pose = planar_pose(*self._pose)
         if self._broadcasts:
             self.context.transform(*self._frames, pose)
-        if not self._odometry.wanted:
-            return
-        message = stamp_message(self.context, "nav_msgs/Odometry", self._frames[0])
-        message.child_frame_id = self._frames[1]
-        fill_pose(message.pose.pose, pose)
-        message.pose.covariance, message.twist.covariance = map(list, self._covariances)
-        twist = message.twist.twist
-        twist.linear.x, twist.linear.y, twist.angular.z = self._velocity
-        self._odometry.publish(message)
+        if self._odometry.wanted:
+            self._odometry.publish(odometry_message(
+                self.context, self._frames, pose, planar_twist(self._velocity), self._covariances))
 
     def _reset(self, request: Any, response: Any) -> None:
         response.success = self.state == RUNNING

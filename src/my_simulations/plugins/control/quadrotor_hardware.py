@@ -15,8 +15,9 @@ from ...description.transmission import Transmission
 from ...engine.wrench_laws import Wrench
 from ...geometry import Vec3, conjugate, norm, rotate, rpy_from_quat, scale
 from ..context import CallHandle, Context, PluginError
-from ..flight.body_wrench import NO_WRENCH, fill_wrench, hold_wrench
-from ..frames import add_tf_prefix, stamp_message
+from ..flight.body_wrench import NO_WRENCH, hold_wrench
+from ..frames import add_tf_prefix
+from ..standard_messages import wrench_message
 from .hardware import Hardware
 from .settings import Settings
 
@@ -193,7 +194,5 @@ class QuadrotorHardware(Hardware):
         for place in sorted(self._updates):
             self._updates[place](elapsed * 1e-9)
         if self._wrenches.wanted:
-            message = stamp_message(self._context, "geometry_msgs/WrenchStamped", self._frame)
-            fill_wrench(message.wrench, self._wrench)
-            self._wrenches.publish(message)
+            self._wrenches.publish(wrench_message(self._context, self._frame, self._wrench))
         hold_wrench(self._context, self.link, self._wrench)

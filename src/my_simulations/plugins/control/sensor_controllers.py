@@ -18,7 +18,7 @@ from ...sensing.sensor_models import (
     velocity_at,
 )
 from ..context import Link, PluginError, Publication
-from ..frames import stamp_message
+from ..standard_messages import imu_message, wrench_message
 from .controller import Controller
 from .settings import Settings
 
@@ -93,13 +93,7 @@ class ImuSensorController(_SensorController):
                 continue
             sample = measure_motion(link.pose, link.twist, acceleration_between(
                 then, now, (now_ns - then_ns) * 1e-9), self.context.gravity, sensor.pose)
-            message = stamp_message(self.context, "sensor_msgs/Imu", frame)
-            turn = message.orientation
-            turn.x, turn.y, turn.z, turn.w = sample.orientation
-            rate, push = message.angular_velocity, message.linear_acceleration
-            rate.x, rate.y, rate.z = sample.angular_velocity
-            push.x, push.y, push.z = sample.linear_acceleration
-            topic.publish(message)
+            topic.publish(imu_message(self.context, frame, *sample))
 
 
 class ForceTorqueSensorController(_SensorController):
@@ -141,11 +135,7 @@ class ForceTorqueSensorController(_SensorController):
             if wrench is None:
                 return
             sample = measure_wrench(wrench, frame, direction, joint.pose, sensor.pose)
-            message = stamp_message(self.context, "geometry_msgs/WrenchStamped", named)
-            force, torque = message.wrench.force, message.wrench.torque
-            force.x, force.y, force.z = sample.force
-            torque.x, torque.y, torque.z = sample.torque
-            topic.publish(message)
+            topic.publish(wrench_message(self.context, named, (sample.force, sample.torque)))
 
         return publish
 

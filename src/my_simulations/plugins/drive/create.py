@@ -14,7 +14,7 @@ from typing import Dict, List, Optional
 from ...geometry import inverse, transform
 from ..base import Plugin
 from ..context import Context, Joint, PluginError
-from ..frames import stamp_message
+from ..standard_messages import joint_state_message
 from ..stepwise_change import StepwiseChange
 from .floor_rays import FloorRays, sensor_named
 from .odometry import Odometer, WheelCounter
@@ -99,12 +99,8 @@ class Create(Plugin):
         self._odometer.publish(self._counter.pose, velocity)
         if not self._states.wanted:
             return
-        message = stamp_message(self.context, "sensor_msgs/JointState")
-        message.name = [joint.name for joint in self._joints]
-        message.position = [joint.position for joint in self._joints]
-        message.velocity = [joint.velocity for joint in self._joints]
-        message.effort = [0.0] * len(self._joints)
-        self._states.publish(message)
+        self._states.publish(joint_state_message(self.context, self._joints,
+                                                 efforts=[0.0] * len(self._joints)))
 
 
 class CreateSensors:

@@ -14,6 +14,7 @@ from ...sensing.sensor_models import acceleration_between, measure_motion, veloc
 from ..base import Plugin
 from ..context import PluginError, Publication
 from ..frames import add_tf_prefix, stamp_message
+from ..standard_messages import diagonal_covariance, imu_message
 from ..stepwise_change import StepwiseChange
 from .floor_rays import FloorRays, sensor_named
 from .odometry import Odometer, WheelRotations, planar_pose
@@ -135,13 +136,8 @@ class Kobuki(Plugin):
         acceleration = acceleration_between(before, self._before, dt)
         sample = measure_motion(link.pose, link.twist, acceleration, context.gravity,
                                 self._imu.pose, self._reference)
-        message = stamp_message(context, "sensor_msgs/Imu", add_tf_prefix(context, "base_link"))
-        turn, rate, push = (message.orientation, message.angular_velocity,
-                            message.linear_acceleration)
-        turn.x, turn.y, turn.z, turn.w = sample.orientation
-        rate.x, rate.y, rate.z = sample.angular_velocity
-        push.x, push.y, push.z = sample.linear_acceleration
-        message.orientation_covariance = [1e6, 0.0, 0.0, 0.0, 1e6, 0.0, 0.0, 0.0, 0.05]
+        message = imu_message(context, add_tf_prefix(context, "base_link"), *sample)
+        message.orientation_covariance = diagonal_covariance((1e6, 1e6, 0.05))
         message.angular_velocity_covariance = list(message.orientation_covariance)
         self._imu_topic.publish(message)
 

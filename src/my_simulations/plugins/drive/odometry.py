@@ -5,10 +5,10 @@ import math
 from typing import List, Optional, Sequence, Tuple
 
 from ...geometry import Pose, Twist, quat_from_rpy, rpy_from_quat
-from ...geometry_messages import fill_pose
 from ..base import Plugin
 from ..context import Context, Joint, Publication
-from ..frames import add_tf_prefix, stamp_message
+from ..frames import add_tf_prefix
+from ..standard_messages import diagonal_covariance, odometry_message
 from .wheels import WheelFrames, WheelStates
 
 _UNKNOWN_VARIANCE = 1e12  # of what a wheeled robot does not measure
@@ -28,11 +28,10 @@ def in_base(pose: Pose, twist: Twist) -> Tuple[float, float, float]:
     return c * vx + s * vy, c * vy - s * vx, twist.angular[2]
 
 
-def diagonal_covariance(values: Tuple[float, ...]) -> List[float]:
-    """A 6 x 6 covariance matrix with this diagonal."""
-    matrix = [0.0] * 36
-    matrix[::7] = values
-    return matrix
+def planar_twist(velocity: Tuple[float, float, float]) -> Twist:
+    """Return the twist of a velocity along x and y, and of a yaw rate."""
+    x, y, yaw = velocity
+    return Twist((x, y, 0.0), (0.0, 0.0, yaw))
 
 
 class WheelRotations:
@@ -112,15 +111,14 @@ class Odometer:
                  covariance: Tuple[float, ...] = DRIVE_COVARIANCE,
                  twist_covariance: Tuple[float, ...] = (0.0,) * 6) -> None:
         self._context = context
-        self.frame, self.base = add_tf_prefix(context, frame), add_tf_prefix(context, base)
+        self._frames = (add_tf_prefix(context, frame), add_tf_prefix(context, base))
         self._topic = context.publish(topic, "nav_msgs/Odometry") if topic else None
         self.topics: List[Publication] = [self._topic] if self._topic is not None else []
-        self._covariance = diagonal_covariance(covariance)
-        self._twist_covariance = diagonal_covariance(twist_covariance)
+        self._covariances = (diagonal_covariance(covariance), diagonal_covariance(twist_covariance))
 
     def transform(self, pose: Pose) -> None:
         """Broadcast odom -> base."""
-        self._context.transform(self.frame, self.base, pose)
+        self._context.transform(*self._frames, pose)
 
     def publish(self, pose: Pose, velocity: Tuple[float, float, float],
                 yaw_variance: Optional[float] = None) -> None:
@@ -131,13 +129,8 @@ class Odometer:
         """
         if self._topic is None or not self._topic.wanted:
             return
-        message = stamp_message(self._context, "nav_msgs/Odometry")
-        message.header.frame_id, message.child_frame_id = self.frame, self.base
-        fill_pose(message.pose.pose, pose)
-        message.pose.covariance = list(self._covariance)
-        message.twist.twist.linear.x, message.twist.twist.linear.y = velocity[:2]
-        message.twist.twist.angular.z = velocity[2]
-        message.twist.covariance = list(self._twist_covariance)
+        message = odometry_message(self._context, self._frames, pose, planar_twist(velocity),
+                                   self._covariances)
         if yaw_variance is not None:
             message.pose.covariance[35] = message.twist.covariance[35] = yaw_variance
         self._topic.publish(message)

@@ -7,7 +7,8 @@ from typing import Any, List, Optional, Sequence
 from ...geometry import compose, inverse
 from ..context import CallHandle, Context, Joint, Publication
 from ..finite_messages import finite_only
-from ..frames import add_tf_prefix, stamp_message
+from ..frames import add_tf_prefix
+from ..standard_messages import joint_state_message
 from ..stepwise_change import StepwiseChange
 from ..time_out import TimeOut
 
@@ -90,15 +91,10 @@ class WheelStates:
         self.topics: List[Publication] = [self._topic]
 
     def send(self) -> None:
-        if not self._topic.wanted:
-            return
-        message = stamp_message(self._context, "sensor_msgs/JointState", self._frame)
-        message.name = [joint.name for joint in self._joints]
-        message.position = [joint.position for joint in self._joints]
-        if self._motion:
-            message.velocity = [joint.velocity for joint in self._joints]
-            message.effort = [0.0] * len(self._joints)
-        self._topic.publish(message)
+        if self._topic.wanted:
+            self._topic.publish(joint_state_message(
+                self._context, self._joints, self._frame,
+                [0.0] * len(self._joints) if self._motion else None, self._motion))
 
 
 FASTEST = 1e3  # rad/s: no wheel of a car turns as fast

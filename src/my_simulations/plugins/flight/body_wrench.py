@@ -1,7 +1,7 @@
 """Wrenches that plugins give in the axes of a link."""
 from __future__ import annotations
 
-from typing import Any, Tuple
+from typing import Tuple
 
 from ...engine.wrench_laws import BodyWrench, Wrench
 from ...geometry import Vec3, conjugate, rotate
@@ -28,9 +28,3 @@ def body_twist(link: Link) -> Tuple[Vec3, Vec3]:
     """Linear and angular velocity of a link at its origin, in its axes, m/s and rad/s."""
     back, twist = conjugate(link.pose.orientation), link.twist
     return rotate(back, twist.linear), rotate(back, twist.angular)
-
-
-def fill_wrench(message: Any, wrench: Wrench) -> None:
-    force, torque = wrench
-    message.force.x, message.force.y, message.force.z = force
-    message.torque.x, message.torque.y, message.torque.z = torque

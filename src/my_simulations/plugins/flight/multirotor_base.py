@@ -12,6 +12,7 @@ from typing import Any, Dict
 from ..base import Plugin
 from ..context import Joint, PluginError
 from ..frames import stamp_message
+from ..standard_messages import joint_state_message
 from .motor_model import ACTUATORS
 
 _ROTOR = re.compile(r"rotor_(\d+)")
@@ -40,10 +41,8 @@ class MultirotorBase(Plugin):
         context.observe(0.0, self._publish_speeds, [self._speeds])
 
     def _publish_states(self) -> None:
-        message = stamp_message(self.context, "sensor_msgs/JointState", self._base)
-        message.name = [joint.name for joint in self._joints]
-        message.position = [joint.position for joint in self._joints]
-        self._states.publish(message)
+        self._states.publish(joint_state_message(self.context, self._joints, self._base,
+                                                 velocities=False))
 
     def _publish_speeds(self) -> None:
         message = stamp_message(self.context, ACTUATORS, self._base)

@@ -19,7 +19,8 @@ from ..base import Plugin
 from ..context import CallHandle, Context, PluginError
 from ..finite_messages import finite_only
 from ..frames import stamp_message
-from .body_wrench import body_twist, fill_wrench, push_at_origin
+from ..standard_messages import wrench_message
+from .body_wrench import body_twist, push_at_origin
 
 _PWM_STEPS = 255
 _COMMAND_END_NS = 10 ** 9
@@ -192,9 +193,7 @@ class QuadrotorPropulsion(Plugin):
         wrench = wrench_of(self._rotors, arm)
         push_at_origin(self.context, self._link, wrench)
         if self._wrenches.wanted:
-            message = stamp_message(self.context, "geometry_msgs/WrenchStamped", self._frame)
-            fill_wrench(message.wrench, wrench)
-            self._wrenches.publish(message)
+            self._wrenches.publish(wrench_message(self.context, self._frame, wrench))
         if self._status.wanted and self.context.now_ns >= self._next_status_ns:
             self._next_status_ns = self.context.now_ns + self._status_ns
             self._publish_status()
@@ -271,9 +270,8 @@ class QuadrotorAerodynamics(Plugin):
             self.context.set_wrench_law(self._link.name, self._drag)
 
     def _publish(self) -> None:
-        message = stamp_message(self.context, "geometry_msgs/WrenchStamped", self._frame)
-        fill_wrench(message.wrench, self._drag.in_body_axes(self._link.pose, self._link.twist))
-        self._wrenches.publish(message)
+        self._wrenches.publish(wrench_message(self.context, self._frame, self._drag.in_body_axes(
+            self._link.pose, self._link.twist)))
 
 
 def model_parameters(context: Context, namespace: str, names: List[str]) -> List[float]:

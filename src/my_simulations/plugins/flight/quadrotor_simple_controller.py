@@ -22,11 +22,12 @@ from ...geometry import (
     scale,
     subtract,
 )
+from ...geometry_messages import fill_wrench
 from ..base import Plugin
 from ..context import CallHandle
 from ..finite_messages import finite_only
 from ..sensors.hector_errors import rate_of
-from .body_wrench import NO_WRENCH, fill_wrench, hold_wrench
+from .body_wrench import NO_WRENCH, hold_wrench
 from .filtered_pid import FilteredPid
 
 _TAKE_OFF = 0.1        # m/s: a command to rise this fast starts the motors

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from typing import Any, Deque, List, Optional, Tuple
+from typing import Deque, List, Optional, Tuple
 
 from ...geometry import (
     Pose,
@@ -27,12 +27,12 @@ from ...geometry import (
     rotate,
     subtract,
 )
-from ...geometry_messages import fill_pose
+from ...geometry_messages import fill_pose, fill_quaternion, fill_vector
 from ...sensing.noise import SampleGenerator
 from ..base import Plugin
 from ..context import Link, Publication
-from ..drive.odometry import diagonal_covariance
 from ..frames import stamp_message
+from ..standard_messages import diagonal_covariance, odometry_message, point_message
 
 _WORLD = "world"
 _QUANTITIES = ("Position", "Quaternion", "LinearVelocity", "AngularVelocity")
@@ -55,9 +55,9 @@ class RotorsOdometry(Plugin):
         self._noisy = any(any(vector) for vector in (*self._normal, *self._uniform))
         self._draws = SampleGenerator(context.seed, f"{context.model}::{self._link.name}",
                                       self._frames[1])
-        self._covariances = [diagonal_covariance(tuple(value ** 2 for vector in pair
-                                                       for value in vector))
-                             for pair in (self._normal[:2], self._normal[2:])]
+        self._covariances = [
+            diagonal_covariance([value ** 2 for vector in pair for value in vector])
+            for pair in (self._normal[:2], self._normal[2:])]
         self._delay = max(0, p.integer("measurementDelay", 0))
         self._stamp_ns = round(p.number("unknownDelay", 0.0) * 1e9)
         if p.text("covarianceImage"):
@@ -129,33 +129,21 @@ class RotorsOdometry(Plugin):
             self._pose.publish(message)
         if self._posed.wanted:
             message = stamp_message(context, "geometry_msgs/PoseWithCovarianceStamped", parent, ns)
-            self._fill(message.pose, pose)
+            fill_pose(message.pose.pose, pose)
+            message.pose.covariance = list(self._covariances[0])
             self._posed.publish(message)
         if self._position.wanted:
-            message = stamp_message(context, "geometry_msgs/PointStamped", parent, ns)
-            message.point.x, message.point.y, message.point.z = pose.position
-            self._position.publish(message)
+            self._position.publish(point_message(context, parent, pose.position, ns))
         if self._transform.wanted:
             message = stamp_message(context, "geometry_msgs/TransformStamped", parent, ns)
             message.child_frame_id = child
-            at, turn = message.transform.translation, message.transform.rotation
-            at.x, at.y, at.z = pose.position
-            turn.x, turn.y, turn.z, turn.w = pose.orientation
+            fill_vector(message.transform.translation, pose.position)
+            fill_quaternion(message.transform.rotation, pose.orientation)
             self._transform.publish(message)
         if self._odometry.wanted:
-            message = stamp_message(context, "nav_msgs/Odometry", parent, ns)
-            message.child_frame_id = child
-            self._fill(message.pose, pose)
-            linear, angular = message.twist.twist.linear, message.twist.twist.angular
-            linear.x, linear.y, linear.z = twist.linear
-            angular.x, angular.y, angular.z = twist.angular
-            message.twist.covariance = list(self._covariances[1])
-            self._odometry.publish(message)
+            self._odometry.publish(odometry_message(context, self._frames, pose, twist,
+                                                    self._covariances, ns))
         context.transform(parent, child, pose)
-
-    def _fill(self, message: Any, pose: Pose) -> None:
-        fill_pose(message.pose, pose)
-        message.covariance = list(self._covariances[0])
 
 
 def small_rotation(angles: Vec3) -> Quat:

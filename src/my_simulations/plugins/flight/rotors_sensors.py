@@ -8,12 +8,12 @@ noise is drawn by sim time from the seed of the world.
 from __future__ import annotations
 
 import math
-from typing import List
 
 from ...description.sensor import Gps as GpsBlock
 from ...description.sensor import Noise as NoiseSpec
 from ...description.surroundings import SphericalCoordinates
 from ...geometry import Vec3, add, conjugate, rotate, transform
+from ...geometry_messages import fill_vector
 from ...sensing import gps
 from ...sensing.noise import GAUSSIAN, sample_generator
 from ...sensing.sensor_models import velocity_at
@@ -23,9 +23,14 @@ from ..frames import stamp_message
 from ..noise import WhiteNoise
 from ..sensors.imu import Imu
 from ..sensors.rays import SampledNoise
+from ..standard_messages import (
+    diagonal_covariance,
+    fix_message,
+    imu_message,
+    magnetic_message,
+)
 
 _DEGREE = math.pi / 180.0
-_KNOWN_DIAGONAL = 2            # of sensor_msgs/NavSatFix
 _EARTH_RADIUS = 6356766.0      # m; this and the next four: U.S. Standard Atmosphere 1976
 _SEA_LEVEL_PRESSURE = 101325.0
 _SEA_LEVEL_TEMPERATURE = 288.15
@@ -51,7 +56,8 @@ class RotorsImu(Imu):
         self._errors = [SampledNoise(context, self._spec(*values), f"{who}/{kind}/{axis}")
                         for kind, values in (("rate", gyroscope), ("acceleration", accelerometer))
                         for axis in "xyz"]
-        self._variances = [_diagonal([values[0] ** 2] * 3) for values in (gyroscope, accelerometer)]
+        self._variances = [diagonal_covariance([values[0] ** 2] * 3)
+                           for values in (gyroscope, accelerometer)]
         self._topic = context.publish(p.text("imuTopic", "imu"), "sensor_msgs/Imu")
         self.begin_motion()
         self.follow(0.0)
@@ -73,12 +79,7 @@ class RotorsImu(Imu):
         context, sample = self.context, self.measured()
         values = [errors.apply(value, context.now_ns) for errors, value in zip(
             self._errors, (*sample.angular_velocity, *sample.linear_acceleration))]
-        message = stamp_message(context, "sensor_msgs/Imu", self._link.name)
-        turn, rate, push = (message.orientation, message.angular_velocity,
-                            message.linear_acceleration)
-        turn.x, turn.y, turn.z, turn.w = sample.orientation
-        rate.x, rate.y, rate.z = values[:3]
-        push.x, push.y, push.z = values[3:]
+        message = imu_message(context, self._link.name, sample.orientation, values[:3], values[3:])
         message.orientation_covariance = [-1.0] * 9
         message.angular_velocity_covariance = list(self._variances[0])
         message.linear_acceleration_covariance = list(self._variances[1])
@@ -107,12 +108,9 @@ class RotorsMagnetometer(Plugin):
         context = self.context
         x, y, z = (size * draw for size, draw in zip(
             self._stddev, self._noise.draw(3, context.now_ns)))
-        message = stamp_message(context, "sensor_msgs/MagneticField", self._link.name)
         felt = rotate(conjugate(self._link.pose.orientation), add(self._field, (x, y, z)))
-        field = message.magnetic_field
-        field.x, field.y, field.z = felt
-        message.magnetic_field_covariance = _diagonal([size ** 2 for size in self._stddev])
-        self._topic.publish(message)
+        self._topic.publish(magnetic_message(context, self._link.name, felt,
+                                             [size ** 2 for size in self._stddev]))
 
 
 class RotorsPressure(Plugin):
@@ -160,7 +158,7 @@ class RotorsGps(Plugin):
             ("x", block.position_horizontal), ("y", block.position_horizontal),
             ("z", block.position_vertical))]
         level, up = p.number("horPosStdDev", 3.0), p.number("verPosStdDev", 6.0)
-        self._covariance = _diagonal([level ** 2, level ** 2, up ** 2])
+        self._variances = (level ** 2, level ** 2, up ** 2)
         self._speeds = [p.number("horVelStdDev", 0.1)] * 2 + [p.number("verVelStdDev", 0.1)]
         self._noise = WhiteNoise(context.seed, f"{context.model}::{self._frame}::gps", 1.0)
         self._fix = context.publish(p.text("gpsTopic", "gps"), "sensor_msgs/NavSatFix")
@@ -182,22 +180,11 @@ class RotorsGps(Plugin):
                 self._place, transform(link.pose, self._mount.position)))
             found = gps.measure((x, y, z), velocity,
                                 context.spherical_coordinates or SphericalCoordinates())
-            message = stamp_message(context, "sensor_msgs/NavSatFix", self._frame)
-            message.status.status, message.status.service = 0, 1
-            message.latitude, message.longitude = found.latitude_deg, found.longitude_deg
-            message.altitude = found.altitude
-            message.position_covariance = list(self._covariance)
-            message.position_covariance_type = _KNOWN_DIAGONAL
-            self._fix.publish(message)
+            self._fix.publish(fix_message(context, self._frame, found.latitude_deg,
+                                          found.longitude_deg, found.altitude, self._variances,
+                                          service=1))
         if self._speed.wanted:
             message = stamp_message(context, "geometry_msgs/TwistStamped", self._frame)
-            linear = message.twist.linear
-            linear.x, linear.y, linear.z = (value + size * draw for value, size, draw in zip(
-                velocity, self._speeds, self._noise.draw(3, ns)))
+            fill_vector(message.twist.linear, (value + size * draw for value, size, draw in zip(
+                velocity, self._speeds, self._noise.draw(3, ns))))
             self._speed.publish(message)
-
-
-def _diagonal(variances: List[float]) -> List[float]:
-    matrix = [0.0] * 9
-    matrix[::4] = variances
-    return matrix

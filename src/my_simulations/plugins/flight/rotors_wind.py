@@ -8,11 +8,12 @@ from __future__ import annotations
 from typing import List, Optional
 
 from ...engine.wrench_laws import ForceAtPoint
-from ...geometry import Vec3, add, scale, unit
+from ...geometry import ZERO3, Vec3, add, scale, unit
+from ...geometry_messages import fill_vector
 from ..base import Plugin
 from ..context import CallHandle, PluginError, Publication
 from ..frames import stamp_message
-from .body_wrench import fill_wrench
+from ..standard_messages import wrench_message
 
 
 class RotorsWind(Plugin):
@@ -70,12 +71,10 @@ class RotorsWind(Plugin):
         self.context.set_wrench_law(self._link.name, ForceAtPoint(self.force(), self._offset))
 
     def _publish_force(self) -> None:
-        message = stamp_message(self.context, "geometry_msgs/WrenchStamped", self._frame)
-        fill_wrench(message.wrench, (self.force(), (0.0, 0.0, 0.0)))
-        self._force.publish(message)
+        self._force.publish(wrench_message(self.context, self._frame, (self.force(), ZERO3)))
 
     def _publish_speed(self) -> None:
         assert self._speed is not None
         message = stamp_message(self.context, "rotors_comm/WindSpeed", self._frame)
-        message.velocity.x, message.velocity.y, message.velocity.z = self._velocity
+        fill_vector(message.velocity, self._velocity)
         self._speed.publish(message)

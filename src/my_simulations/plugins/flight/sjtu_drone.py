@@ -12,6 +12,7 @@ import random
 from typing import Any, Optional, Tuple
 
 from ...geometry import ZERO3, Vec3, conjugate, norm, rotate, rpy_from_quat, scale, subtract
+from ...geometry_messages import fill_pose, fill_vector
 from ..base import Plugin
 from ..context import CallHandle
 from ..finite_messages import finite_only
@@ -184,16 +185,13 @@ class SjtuDrone(Plugin):
         self._seen_velocity, self._seen_ns = velocity, now
         if self._poses.wanted:
             message = self.context.message("geometry_msgs/Pose")
-            at, turn = message.position, message.orientation
-            at.x, at.y, at.z = pose.position
-            turn.x, turn.y, turn.z, turn.w = pose.orientation
+            fill_pose(message, pose)
             self._poses.publish(message)
         for topic, vector in ((self._velocities, velocity),
                               (self._accelerations, acceleration)):
             if topic.wanted:
                 message = self.context.message("geometry_msgs/Twist")
-                linear = message.linear
-                linear.x, linear.y, linear.z = rotate(conjugate(pose.orientation), vector)
+                fill_vector(message.linear, rotate(conjugate(pose.orientation), vector))
                 topic.publish(message)
 
 

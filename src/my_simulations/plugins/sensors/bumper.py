@@ -14,10 +14,12 @@ from __future__ import annotations
 from typing import Any, Dict, List, Tuple
 
 from ...description.model import Model
-from ...geometry import Vec3, add, conjugate, cross, rotate, scale, subtract
+from ...geometry import ZERO3, Vec3, add, conjugate, cross, rotate, scale, subtract
+from ...geometry_messages import fill_vector, fill_wrench
 from ..base import Plugin
 from ..context import PluginError
 from ..frames import add_tf_prefix, stamp_message
+from ..standard_messages import wrench_message
 
 
 class Bumper(Plugin):
@@ -84,14 +86,13 @@ def _first_collision(scoped: str, models: Dict[str, Model]) -> str:
 
 def _vector(context: Any, values: Vec3) -> Any:
     made = context.message("geometry_msgs/Vector3")
-    made.x, made.y, made.z = values
+    fill_vector(made, values)
     return made
 
 
 def _wrench(context: Any, force: Vec3, torque: Vec3) -> Any:
     made = context.message("geometry_msgs/Wrench")
-    made.force.x, made.force.y, made.force.z = force
-    made.torque.x, made.torque.y, made.torque.z = torque
+    fill_wrench(made, (force, torque))
     return made
 
 
@@ -116,8 +117,5 @@ class FootContact(Plugin):
                 force: Vec3 = add(scale(contact.normal, contact.force), contact.friction)
                 total = add(total, scale(force, 1.0 if one == mine else -1.0))
                 count += 1
-        message = stamp_message(context, "geometry_msgs/WrenchStamped", self._link.name)
         force = rotate(conjugate(self._link.pose.orientation), scale(total, 1.0 / max(1, count)))
-        at = message.wrench.force
-        at.x, at.y, at.z = force
-        self._topic.publish(message)
+        self._topic.publish(wrench_message(context, self._link.name, (force, ZERO3)))

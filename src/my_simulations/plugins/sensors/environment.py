@@ -17,11 +17,8 @@ from ...sensing.sensor_models import measure_altitude, measure_magnetic_field, v
 from ..base import Plugin
 from ..context import PluginError, Publication
 from ..frames import add_tf_prefix
-from .hector import make_vector
-from .image_messages import header
+from ..standard_messages import fix_message, magnetic_message, point_message, vector_message
 from .rays import SampledNoise
-
-_DIAGONAL_KNOWN = 2  # of sensor_msgs/NavSatFix
 
 
 class _SensorPlugin(Plugin):
@@ -55,9 +52,6 @@ class _SensorPlugin(Plugin):
 
     clock_set = reset
 
-    def _header(self) -> Any:
-        return header(self.context, self.context.now_ns, self._frame)
-
     def update(self) -> None:
         raise NotImplementedError
 
@@ -75,7 +69,7 @@ class GpsSensor(_SensorPlugin):
             (block.velocity_horizontal, "east"), (block.velocity_horizontal, "north"),
             (block.velocity_vertical, "up"))]
         level, up = block.position_horizontal.stddev ** 2, block.position_vertical.stddev ** 2
-        self._covariance = [level, 0.0, 0.0, 0.0, level, 0.0, 0.0, 0.0, up]
+        self._variances = (level, level, up)
         fix = context.parameters.text("topicName") or "fix"
         self._fix = context.publish(fix, "sensor_msgs/NavSatFix")
         self._velocity = context.publish(f"{fix}_velocity", "geometry_msgs/Vector3Stamped")
@@ -90,16 +84,10 @@ class GpsSensor(_SensorPlugin):
         east, north, up = (noise.apply(value, ns) for noise, value in zip(
             self._speed, found.velocity))
         if self._fix.wanted:
-            message = context.message("sensor_msgs/NavSatFix")
-            message.header = self._header()
-            message.status.status = message.status.service = 0
-            message.latitude, message.longitude = found.latitude_deg, found.longitude_deg
-            message.altitude = found.altitude
-            message.position_covariance = self._covariance
-            message.position_covariance_type = _DIAGONAL_KNOWN
-            self._fix.publish(message)
+            self._fix.publish(fix_message(context, self._frame, found.latitude_deg,
+                                          found.longitude_deg, found.altitude, self._variances))
         if self._velocity.wanted:
-            self._velocity.publish(make_vector(context, self._header(), (east, north, up)))
+            self._velocity.publish(vector_message(context, self._frame, (east, north, up)))
 
 
 class MagnetometerSensor(_SensorPlugin):
@@ -109,8 +97,7 @@ class MagnetometerSensor(_SensorPlugin):
         self._begin("magnetometer")
         block, context = self.block or Magnetometer(), self.context
         self._axes = [self._noise(getattr(block, axis), axis) for axis in "xyz"]
-        self._variance = [block.x.stddev ** 2, 0.0, 0.0, 0.0, block.y.stddev ** 2, 0.0, 0.0, 0.0,
-                          block.z.stddev ** 2]
+        self._variances = [getattr(block, axis).stddev ** 2 for axis in "xyz"]
         self._topic = context.publish(context.parameters.text("topicName") or "magnetic_field",
                                       "sensor_msgs/MagneticField")
         self._follow(self._topic)
@@ -118,12 +105,8 @@ class MagnetometerSensor(_SensorPlugin):
     def update(self) -> None:
         context = self.context
         felt = measure_magnetic_field(self._link.pose, self._mount, context.magnetic_field)
-        x, y, z = (noise.apply(value, context.now_ns) for noise, value in zip(self._axes, felt))
-        message = context.message("sensor_msgs/MagneticField")
-        message.header, field = self._header(), message.magnetic_field
-        field.x, field.y, field.z = x, y, z
-        message.magnetic_field_covariance = self._variance
-        self._topic.publish(message)
+        noisy = [noise.apply(value, context.now_ns) for noise, value in zip(self._axes, felt)]
+        self._topic.publish(magnetic_message(context, self._frame, noisy, self._variances))
 
 
 class AltimeterSensor(_SensorPlugin):
@@ -146,8 +129,6 @@ class AltimeterSensor(_SensorPlugin):
         height = self._up.apply(found.vertical_position, ns)
         speed = self._upwards.apply(found.vertical_velocity, ns)
         if self._height.wanted:
-            message = context.message("geometry_msgs/PointStamped")
-            message.header, message.point.z = self._header(), height
-            self._height.publish(message)
+            self._height.publish(point_message(context, self._frame, (0.0, 0.0, height)))
         if self._velocity.wanted:
-            self._velocity.publish(make_vector(context, self._header(), (0.0, 0.0, speed)))
+            self._velocity.publish(vector_message(context, self._frame, (0.0, 0.0, speed)))

@@ -12,14 +12,20 @@ from ...description.surroundings import SphericalCoordinates
 from ...geometry import Vec3, conjugate, rotate
 from ..base import Plugin
 from ..context import Link, PluginError, Publication
+from ..frames import stamp_message
+from ..standard_messages import (
+    ULTRASOUND,
+    fix_message,
+    magnetic_message,
+    point_message,
+    range_message,
+    vector_message,
+)
 from .hector_errors import SensorErrors, rate_of
-from .image_messages import header
 from .rays import RayPlugin
 
 _EQUATOR = 6378137.0            # WGS 84, m
 _FLATTENING = 1.0 / 298.257223563
-_DIAGONAL_KNOWN = 2             # of sensor_msgs/NavSatFix
-_ULTRASOUND = 0                 # of sensor_msgs/Range
 _SONAR_HERTZ = 10.0             # where it has no rate of its own, whatever its sensor's is
 _SCALE_HEIGHT, _EXPONENT = 44330.0, 5.263157  # of the standard atmosphere
 
@@ -101,23 +107,17 @@ class Gps(_LinkSensor):
         # From the next sample on, the position error contains this velocity error's integral.
         elapsed, self._last_ns = max(0.0, (ns - self._last_ns) * 1e-9), ns
         self._place_errors.shift([elapsed * drift for drift in self._velocity_errors.current])
-        head = header(self.context, ns, self._frame)
         if self._fix.wanted:
             north, west = self._north_west(x, y)
-            message = self.context.message("sensor_msgs/NavSatFix")
-            message.header = head
-            message.status.status, message.status.service = self._status, self._service
-            message.latitude = self._latitude + math.degrees(north / self._north)
-            message.longitude = self._longitude - math.degrees(west / self._east)
-            message.altitude = self._altitude + z
             variances = [a * a + b * b for a, b in zip(self._place_errors.drift,
                                                        self._place_errors.noise)]
-            message.position_covariance = [variances[0], 0.0, 0.0, 0.0, variances[1], 0.0, 0.0,
-                                           0.0, variances[2]]
-            message.position_covariance_type = _DIAGONAL_KNOWN
-            self._fix.publish(message)
+            self._fix.publish(fix_message(
+                self.context, self._frame, self._latitude + math.degrees(north / self._north),
+                self._longitude - math.degrees(west / self._east), self._altitude + z, variances,
+                self._status, self._service))
         if self._velocity.wanted:
-            self._velocity.publish(make_vector(self.context, head, (*self._north_west(vx, vy), vz)))
+            self._velocity.publish(vector_message(self.context, self._frame,
+                                                  (*self._north_west(vx, vy), vz)))
 
 
 def metres_per_radian(latitude: float) -> Tuple[float, float]:
@@ -129,14 +129,6 @@ def metres_per_radian(latitude: float) -> Tuple[float, float]:
     part = 1.0 / (1.0 - square * math.sin(latitude) ** 2)
     vertical = _EQUATOR * math.sqrt(part)
     return vertical * (1.0 - square) * part, vertical * math.cos(latitude)
-
-
-def make_vector(context: Any, head: Any, values: Vec3) -> Any:
-    """A geometry_msgs/Vector3Stamped."""
-    message = context.message("geometry_msgs/Vector3Stamped")
-    message.header = head
-    message.vector.x, message.vector.y, message.vector.z = values
-    return message
 
 
 class Magnetic(_LinkSensor):
@@ -160,14 +152,8 @@ class Magnetic(_LinkSensor):
         context = self.context
         felt = rotate(conjugate(self._link.pose.orientation), self._field)
         x, y, z = self._errors.apply(felt, context.now_ns)
-        head = header(context, context.now_ns, self._frame)
-        if self._plain:
-            self._topic.publish(make_vector(context, head, (x, y, z)))
-            return
-        message = context.message("sensor_msgs/MagneticField")
-        message.header, field = head, message.magnetic_field
-        field.x, field.y, field.z = x, y, z
-        self._topic.publish(message)
+        make = vector_message if self._plain else magnetic_message
+        self._topic.publish(make(context, self._frame, (x, y, z)))
 
 
 class Baro(_LinkSensor):
@@ -192,15 +178,11 @@ class Baro(_LinkSensor):
     def update(self) -> None:
         context = self.context
         (height,) = self._errors.apply(self._link.pose.position[2:], context.now_ns)
-        head = header(context, context.now_ns, self._frame)
         if self._height.wanted:
-            message = context.message("geometry_msgs/PointStamped")
-            message.header, message.point.z = head, height
-            self._height.publish(message)
+            self._height.publish(point_message(context, self._frame, (0.0, 0.0, height)))
         if self._altimeter is not None and self._altimeter.wanted:
-            message = context.message("hector_uav_msgs/Altimeter")
-            message.header, message.qnh = head, self._qnh
-            message.altitude = height + self._elevation
+            message = stamp_message(context, "hector_uav_msgs/Altimeter", self._frame)
+            message.qnh, message.altitude = self._qnh, height + self._elevation
             message.pressure = pressure_at(message.altitude, self._qnh)
             self._altimeter.publish(message)
 
@@ -235,8 +217,5 @@ class Sonar(RayPlugin):
         if nearest < most:
             (noisy,) = self._errors.apply((nearest,), ns)
             nearest = min(max(noisy, least), most)
-        message = self.context.message("sensor_msgs/Range")
-        message.header = header(self.context, ns, self._frame)
-        message.radiation_type, message.field_of_view = _ULTRASOUND, self._view
-        message.min_range, message.max_range, message.range = least, most, nearest
-        self._topic.publish(message)
+        self._topic.publish(range_message(self.context, self._frame, ns, ULTRASOUND, self._view,
+                                          (least, most), nearest))

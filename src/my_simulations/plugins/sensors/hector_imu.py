@@ -6,11 +6,11 @@ sensor on its link. dynamic_reconfigure and services of hector's own types are n
 from __future__ import annotations
 
 import math
-from typing import Any, List
+from typing import Any, Iterable
 
-from ...geometry import Pose, Quat, Vec3, multiply, normalised, rotate
+from ...geometry import IDENTITY_QUAT, Pose, Quat, Vec3, multiply, normalised, rotate
+from ..standard_messages import diagonal_covariance, imu_message
 from .hector_errors import SensorErrors, rate_of
-from .image_messages import header
 from .imu import Imu
 
 
@@ -47,22 +47,14 @@ class HectorImu(Imu):
 
     def update(self) -> None:
         """Measure, and publish on the topics that have a subscriber."""
-        context, ns = self.context, self.context.now_ns
-        sample = self.measured()
+        ns, sample = self.context.now_ns, self.measured()
         accel = self._accel.apply(sample.linear_acceleration, ns)
         rate = self._rate.apply(sample.angular_velocity, ns)
         (yaw,) = self._yaw.apply((0.0,), ns)
-        head = header(context, ns, self._frame)
         if self._topic.wanted:
-            message = self._message(head, rate, accel)
-            turn = message.orientation
-            turn.x, turn.y, turn.z, turn.w = self._attitude(sample.orientation)
-            self._topic.publish(message)
+            self._topic.publish(self._message(self._attitude(sample.orientation), rate, accel))
         if self._bias.wanted:
-            message = self._message(head, self._rate.bias, self._accel.bias)
-            turn = message.orientation
-            turn.x, turn.y, turn.z, turn.w = 0.0, 0.0, 0.0, 1.0
-            self._bias.publish(message)
+            self._bias.publish(self._message(IDENTITY_QUAT, self._rate.bias, self._accel.bias))
 
     def _attitude(self, orientation: Quat) -> Quat:
         """What a filter that trusts the biased accelerometer and compass would say."""
@@ -76,20 +68,11 @@ class HectorImu(Imu):
             tilt = (0.5 * y / gravity, -0.5 * x / gravity, 0.0, 1.0)
         return multiply(normalised(multiply(around, tilt)), orientation)
 
-    def _message(self, head: Any, rate: Any, accel: Any) -> Any:
-        message = self.context.message("sensor_msgs/Imu")
-        message.header = head
-        turning, pushing = message.angular_velocity, message.linear_acceleration
-        turning.x, turning.y, turning.z = rate
-        pushing.x, pushing.y, pushing.z = accel
+    def _message(self, orientation: Quat, rate: Iterable[float], accel: Iterable[float]) -> Any:
+        message = imu_message(self.context, self._frame, orientation, rate, accel)
         gravity = sum(part * part for part in self.context.gravity)
         tilt = [noise ** 2 / gravity if gravity > 0.0 else -1.0 for noise in self._accel.noise[:2]]
-        message.orientation_covariance = _diagonal([*tilt, self._yaw.noise[0] ** 2])
-        message.angular_velocity_covariance = _diagonal([n ** 2 for n in self._rate.noise])
-        message.linear_acceleration_covariance = _diagonal([n ** 2 for n in self._accel.noise])
+        message.orientation_covariance = diagonal_covariance([*tilt, self._yaw.noise[0] ** 2])
+        message.angular_velocity_covariance, message.linear_acceleration_covariance = (
+            diagonal_covariance([n ** 2 for n in one.noise]) for one in (self._rate, self._accel))
         return message
-
-
-def _diagonal(variances: List[float]) -> List[float]:
-    x, y, z = variances
-    return [x, 0.0, 0.0, 0.0, y, 0.0, 0.0, 0.0, z]

@@ -13,9 +13,9 @@ from ...geometry import IDENTITY, IDENTITY_QUAT, Pose, Quat, Vec3, compose, mult
 from ...sensing.sensor_models import ImuSample, acceleration_between, measure_motion, velocity_at
 from ..base import Plugin
 from ..context import Link, PluginError
-from ..frames import stamp_message
 from ..noise import WhiteNoise
 from ..parameters import lowest_rate
+from ..standard_messages import diagonal_covariance, imu_message
 from .rays import SampledNoise
 
 
@@ -70,14 +70,11 @@ class Imu(Plugin):
     def update(self) -> None:
         sample = self._noisy(self.measured())
         context, noise = self.context, self._white.draw(6, self.context.now_ns)
-        message = stamp_message(context, "sensor_msgs/Imu", self._frame)
-        turn = message.orientation
-        turn.x, turn.y, turn.z, turn.w = multiply(self._offset, sample.orientation)
-        rate, push = message.angular_velocity, message.linear_acceleration
-        rate.x, rate.y, rate.z = (w + n for w, n in zip(sample.angular_velocity, noise))
-        push.x, push.y, push.z = (a + n for a, n in zip(sample.linear_acceleration, noise[3:]))
-        variance = [0.0] * 9
-        variance[::4] = [self._stddev ** 2] * 3
+        message = imu_message(
+            context, self._frame, multiply(self._offset, sample.orientation),
+            (w + n for w, n in zip(sample.angular_velocity, noise)),
+            (a + n for a, n in zip(sample.linear_acceleration, noise[3:])))
+        variance = diagonal_covariance([self._stddev ** 2] * 3)
         message.orientation_covariance = variance
         message.angular_velocity_covariance = list(variance)
         message.linear_acceleration_covariance = list(variance)

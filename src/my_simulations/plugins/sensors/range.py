@@ -6,12 +6,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..frames import add_tf_prefix, stamp_message
+from ..frames import add_tf_prefix
 from ..noise import WhiteNoise
 from ..parameters import lowest_rate
+from ..standard_messages import INFRARED, ULTRASOUND, range_message
 from .rays import RayPlugin
-
-_ULTRASOUND, _INFRARED = 0, 1  # of sensor_msgs/Range
 
 
 class Range(RayPlugin):
@@ -21,8 +20,7 @@ class Range(RayPlugin):
         context, p = self.enter_namespace()
         self.read_ray_element()
         self._frame = add_tf_prefix(context, p.text("frameName", "/world"))
-        self._kind = _ULTRASOUND if p.text("radiation", "ultrasound") == "ultrasound" \
-            else _INFRARED
+        self._kind = ULTRASOUND if p.text("radiation", "ultrasound") == "ultrasound" else INFRARED
         self._view = p.number("fov", 0.05)
         assert context.sensor is not None
         self._noise = WhiteNoise(context.seed, f"{context.model}::{context.sensor_link}::"
@@ -36,7 +34,5 @@ class Range(RayPlugin):
         nearest = min(float(min(returns.ranges)), most)
         if nearest < most:
             nearest = min(most, nearest + self._noise.draw(1, ns)[0])
-        message = stamp_message(self.context, "sensor_msgs/Range", self._frame, ns)
-        message.radiation_type, message.field_of_view = self._kind, self._view
-        message.min_range, message.max_range, message.range = self._ray.min_range, most, nearest
-        self._topic.publish(message)
+        self._topic.publish(range_message(self.context, self._frame, ns, self._kind, self._view,
+                                          (self._ray.min_range, most), nearest))

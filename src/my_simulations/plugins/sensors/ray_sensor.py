@@ -10,12 +10,11 @@ from typing import Any, Dict, Type
 
 from ..base import Plugin
 from ..context import PluginError
-from ..frames import stamp_message
+from ..standard_messages import INFRARED, ULTRASOUND, range_message
 from .image_messages import FLOAT32, point_field
 from .laser_points import BlockLaser, Laser, Points
 from .rays import RayPlugin
 
-_ULTRASOUND, _INFRARED = 0, 1   # of sensor_msgs/Range
 _STEP = 16                      # bytes of a point
 
 
@@ -53,21 +52,17 @@ class RangeOutput(RayPlugin):
         context, p = self.enter_namespace()
         self.read_ray_element()
         self._frame = p.text("frameName", "/world").lstrip("/")
-        self._kind = _INFRARED if p.text("radiationType") in ("infrared", "infared") \
-            else _ULTRASOUND
+        self._kind = INFRARED if p.text("radiationType") in ("infrared", "infared") else ULTRASOUND
         self._topic = context.publish(p.text("topicName", "/world"), "sensor_msgs/Range")
         assert context.sensor is not None
         self.follow(context.sensor.update_rate)
 
     def _publish(self, returns: Any, ns: int) -> None:
-        message = stamp_message(self.context, "sensor_msgs/Range", self._frame, ns)
-        flat, high = self._ray.horizontal, self._ray.vertical
-        message.radiation_type = self._kind
-        message.field_of_view = max(flat.max_angle - flat.min_angle,
-                                    high.max_angle - high.min_angle)
-        message.min_range, message.max_range = self._ray.min_range, self._ray.max_range
-        message.range = float(min(returns.ranges))
-        self._topic.publish(message)
+        ray = self._ray
+        view = max(one.max_angle - one.min_angle for one in (ray.horizontal, ray.vertical))
+        self._topic.publish(range_message(self.context, self._frame, ns, self._kind, view,
+                                          (ray.min_range, ray.max_range),
+                                          float(min(returns.ranges))))
 
 
 _KINDS: Dict[str, Type[Plugin]] = {

@@ -12,7 +12,8 @@ from typing import Optional, Tuple
 from ...geometry import Quat, Vec3, conjugate, multiply, rotate, scale, subtract
 from ...sensing.sensor_models import velocity_at
 from ..base import Plugin
-from ..frames import add_tf_prefix, stamp_message
+from ..frames import add_tf_prefix
+from ..standard_messages import wrench_message
 
 
 class F3d(Plugin):
@@ -45,11 +46,9 @@ class F3d(Plugin):
         if before is None or before[0] == now:
             return
         per_second = 1e9 / (now - before[0])
-        message = stamp_message(self.context, "geometry_msgs/WrenchStamped", self._frame)
-        force, torque = message.wrench.force, message.wrench.torque
-        force.x, force.y, force.z = scale(subtract(linear, before[1]), per_second)
-        torque.x, torque.y, torque.z = scale(subtract(angular, before[2]), per_second)
-        self._topic.publish(message)
+        self._topic.publish(wrench_message(self.context, self._frame, (
+            scale(subtract(linear, before[1]), per_second),
+            scale(subtract(angular, before[2]), per_second))))
 
     def _momenta(self) -> Tuple[Vec3, Vec3]:
         """Linear, kg m/s, and angular about the centre of mass, kg m^2/s; world axes."""

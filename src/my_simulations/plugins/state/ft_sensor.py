@@ -6,16 +6,17 @@ by the sensor's `<frame>`, `<measure_direction>`, noise and rate.
 """
 from __future__ import annotations
 
-from typing import Any, Optional
+from typing import Optional
 
 from ...description.model import WORLD, Joint
 from ...description.sensor import ForceTorque
 from ...sensing.sensor_models import measure_wrench
 from ..base import Plugin
 from ..context import PluginError
-from ..frames import add_tf_prefix, stamp_message
+from ..frames import add_tf_prefix
 from ..noise import WhiteNoise
 from ..sensors.rays import SampledNoise
+from ..standard_messages import wrench_message
 
 
 class FtSensor(Plugin):
@@ -76,10 +77,5 @@ class FtSensor(Plugin):
             (*sample.force, *sample.torque), self._white.draw(6, self.context.now_ns))]
         values = [float(noise.apply(value, context.now_ns))
                   for noise, value in zip(self._noise, values)] or values
-        self._topic.publish(self._message(values))
-
-    def _message(self, values: "list[float]") -> Any:
-        message = stamp_message(self.context, "geometry_msgs/WrenchStamped", self._frame)
-        force, torque = message.wrench.force, message.wrench.torque
-        force.x, force.y, force.z, torque.x, torque.y, torque.z = values
-        return message
+        x, y, z, tx, ty, tz = values
+        self._topic.publish(wrench_message(context, self._frame, ((x, y, z), (tx, ty, tz))))

@@ -14,7 +14,7 @@ from ...geometry import IDENTITY_QUAT, Quat, Vec3, conjugate, multiply, normalis
 from ..base import Plugin
 from ..context import PluginError
 from ..finite_messages import finite_only
-from ..frames import stamp_message
+from ..standard_messages import joint_state_message
 from ..transforms import Transforms
 
 _BASE, _LEVEL = "base_link", "base_stabilized"
@@ -106,12 +106,9 @@ class HectorServo(Plugin):
         return (b,) if self._is_single else (a, b, c)[:len(self._joints)]
 
     def _publish(self) -> None:
-        message = stamp_message(self.context, "sensor_msgs/JointState", self.context.link("").name)
-        message.name = [joint.name for joint in self._joints]
-        message.position = [joint.position for joint in self._joints]
-        message.velocity = [joint.velocity for joint in self._joints]
-        message.effort = self.context.efforts(message.name)
-        self._states.publish(message)
+        self._states.publish(joint_state_message(
+            self.context, self._joints, self.context.link("").name,
+            self.context.efforts([joint.name for joint in self._joints])))
 
 
 def _or_unlimited(limit: float) -> float:

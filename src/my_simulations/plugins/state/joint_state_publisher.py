@@ -5,7 +5,7 @@ from typing import List
 
 from ..base import Plugin
 from ..context import Joint, PluginError
-from ..frames import stamp_message
+from ..standard_messages import joint_state_message
 
 
 class JointStatePublisher(Plugin):
@@ -27,8 +27,4 @@ class JointStatePublisher(Plugin):
         context.observe(p.number("updateRate", 100.0), self.update, [self._topic])
 
     def update(self) -> None:
-        message = stamp_message(self.context, "sensor_msgs/JointState")
-        message.name = [joint.name for joint in self._joints]
-        message.position = [joint.position for joint in self._joints]
-        message.velocity = [joint.velocity for joint in self._joints]
-        self._topic.publish(message)
+        self._topic.publish(joint_state_message(self.context, self._joints))

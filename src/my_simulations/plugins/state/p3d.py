@@ -5,13 +5,14 @@ and twist are given in that frame's axes (original: they are rotated by the wron
 """
 from __future__ import annotations
 
-from typing import Any, Optional
+from typing import Optional
 
 from ...geometry import Pose, Twist, add, compose, conjugate, inverse, multiply, rotate, subtract
 from ..base import Plugin
 from ..context import Link, PluginError
-from ..frames import add_tf_prefix, stamp_message
+from ..frames import add_tf_prefix
 from ..noise import WhiteNoise
+from ..standard_messages import diagonal_covariance, odometry_message
 
 _WORLD = ("", "world", "/world", "map", "/map")
 
@@ -32,7 +33,7 @@ class P3d(Plugin):
         self._stddev = p.number("gaussianNoise", 0.0)
         self._noise = WhiteNoise(context.seed, f"{context.model}::{name}::p3d", self._stddev)
         # The original puts the prefix before the first alone.
-        self._frame_id, self._child_id = add_tf_prefix(context, frame), name
+        self._frames = (add_tf_prefix(context, frame), name)
         self._topic = context.publish(p.text("topicName"), "nav_msgs/Odometry")
         context.observe(p.number("updateRate", 0.0), self.update, [self._topic])
 
@@ -44,20 +45,11 @@ class P3d(Plugin):
             pose = compose(inverse(at), pose)
             twist = Twist(rotate(back, subtract(twist.linear, motion.linear)),
                           rotate(back, subtract(twist.angular, motion.angular)))
-        self._topic.publish(self._message(pose, twist))
-
-    def _message(self, pose: Pose, twist: Twist) -> Any:
-        context, noise = self.context, self._noise.draw(6, self.context.now_ns)
-        message = stamp_message(context, "nav_msgs/Odometry")
-        message.header.frame_id, message.child_frame_id = self._frame_id, self._child_id
-        at, turn = message.pose.pose.position, message.pose.pose.orientation
-        at.x, at.y, at.z = add(pose.position, self._offset.position)
-        turn.x, turn.y, turn.z, turn.w = multiply(self._offset.orientation, pose.orientation)
-        linear, angular = message.twist.twist.linear, message.twist.twist.angular
-        linear.x, linear.y, linear.z = (v + n for v, n in zip(twist.linear, noise))
-        angular.x, angular.y, angular.z = (w + n for w, n in zip(twist.angular, noise[3:]))
-        variance = [0.0] * 36
-        variance[::7] = [self._stddev ** 2] * 6
-        message.pose.covariance = variance
-        message.twist.covariance = list(variance)
-        return message
+        x, y, z, roll, pitch, yaw = self._noise.draw(6, self.context.now_ns)
+        covariance = diagonal_covariance([self._stddev ** 2] * 6)
+        self._topic.publish(odometry_message(
+            self.context, self._frames,
+            Pose(add(pose.position, self._offset.position),
+                 multiply(self._offset.orientation, pose.orientation)),
+            Twist(add(twist.linear, (x, y, z)), add(twist.angular, (roll, pitch, yaw))),
+            (covariance, covariance)))

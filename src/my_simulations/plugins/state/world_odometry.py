@@ -14,7 +14,7 @@ with the messages of /gazebo/model_states.
 """
 from __future__ import annotations
 
-from typing import Any, Optional
+from typing import Optional
 
 from ...geometry import (
     Pose,
@@ -30,15 +30,16 @@ from ...geometry import (
     rpy_from_quat,
     subtract,
 )
-from ...geometry_messages import fill_pose, fill_twist
+from ...geometry_messages import fill_twist
 from ..base import Plugin
 from ..context import Link, PluginError
-from ..drive.odometry import diagonal_covariance
-from ..frames import add_tf_prefix, stamp_message
+from ..frames import add_tf_prefix
 from ..noise import WhiteNoise
+from ..standard_messages import diagonal_covariance, odometry_message
 
 _WORLD = ("", "world", "/world", "map", "/map")
-_ROBOTNIK_VARIANCE = 0.1
+_EXACT = (diagonal_covariance((0.0,) * 6),) * 2   # of pose and twist
+_ROBOTNIK_COVARIANCES = (diagonal_covariance((0.1,) * 6),) * 2
 
 
 class PalWorldOdometry(Plugin):
@@ -67,8 +68,8 @@ class PalWorldOdometry(Plugin):
         here = Pose(add(pose.position, (self._error[0], self._error[1], 0.0)),
                     quat_from_rpy(roll, pitch, heading + self._error[2]))
         spin = rotate(conjugate(pose.orientation), twist.angular)
-        self._topic.publish(odometry_message(context, self._frame, self._link.name, here,
-                                             Twist(twist.linear, spin), 0.0))
+        self._topic.publish(odometry_message(context, (self._frame, self._link.name), here,
+                                             Twist(twist.linear, spin), _EXACT))
 
 
 class RobotnikGroundTruthOdometry(Plugin):
@@ -82,8 +83,8 @@ class RobotnikGroundTruthOdometry(Plugin):
         self._link = context.link(p.text("bodyName"))
         world = p.text("worldBodyName", "world")
         self._parent: Optional[Link] = None if world in _WORLD else context.link(world)
-        self._child_id = p.text("frameName", self._link.name)
-        self._frame_id = add_tf_prefix(context, p.text("worldFrameName", world))
+        self._frames = (add_tf_prefix(context, p.text("worldFrameName", world)),
+                        p.text("frameName", self._link.name))
         self._offset = Pose(p.vector("xyzOffset"), p.turn("rpyOffset"))
         self._noise = WhiteNoise(context.seed, f"{context.model}::{self._link.name}::truth",
                                  p.number("gaussianNoise", 0.0))
@@ -108,22 +109,10 @@ class RobotnikGroundTruthOdometry(Plugin):
         moving = Twist(add(rotate(back, linear), (noise[0], noise[1], noise[2])),
                        add(rotate(back, angular), (noise[3], noise[4], noise[5])))
         if self._topic.wanted:
-            self._topic.publish(odometry_message(context, self._frame_id, self._child_id, pose,
-                                                 moving, _ROBOTNIK_VARIANCE))
+            self._topic.publish(odometry_message(context, self._frames, pose, moving,
+                                                 _ROBOTNIK_COVARIANCES))
         if self._broadcasts:
-            context.transform(self._frame_id, self._child_id, pose)
-
-
-def odometry_message(context: Any, frame: str, child: str, pose: Pose, twist: Twist,
-                     variance: float) -> Any:
-    """A nav_msgs/Odometry whose covariances have one number on their diagonals."""
-    message = stamp_message(context, "nav_msgs/Odometry", frame)
-    message.child_frame_id = child
-    fill_pose(message.pose.pose, pose)
-    fill_twist(message.twist.twist, twist)
-    message.pose.covariance = diagonal_covariance((variance,) * 6)
-    message.twist.covariance = diagonal_covariance((variance,) * 6)
-    return message
+            context.transform(*self._frames, pose)
 
 
 class CatVehicle(Plugin):
@@ -151,6 +140,6 @@ class CatVehicle(Plugin):
         steering = context.message("geometry_msgs/Wrench")
         steering.torque.z = sum(joint.position for joint in self._steering) / 2.0   # rad
         self._angle.publish(steering)
-        frame, base = f"{self._scope}/odom", f"{self._scope}/base_link"
-        context.transform(frame, base, pose)
-        self._odom.publish(odometry_message(context, frame, base, pose, twist, 0.0))
+        frames = (f"{self._scope}/odom", f"{self._scope}/base_link")
+        context.transform(*frames, pose)
+        self._odom.publish(odometry_message(context, frames, pose, twist, _EXACT))

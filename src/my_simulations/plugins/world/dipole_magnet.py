@@ -27,9 +27,8 @@ from ...geometry import (
     transform,
 )
 from ..base import Plugin
-from ..flight.body_wrench import fill_wrench
-from ..frames import stamp_message
 from ..parameters import Parameters
+from ..standard_messages import magnetic_message, wrench_message
 
 LIBRARY = "libgazebo_dipole_magnet.so"
 _MU0_BY_4_PI = 1e-7   # T m / A
@@ -132,11 +131,6 @@ class DipoleMagnet(Plugin):
 
     def _publish(self, force: Vec3, torque: Vec3, field: Vec3) -> None:
         if self._wrenches.wanted:
-            message = stamp_message(self.context, "geometry_msgs/WrenchStamped", "world")
-            fill_wrench(message.wrench, (force, torque))
-            self._wrenches.publish(message)
+            self._wrenches.publish(wrench_message(self.context, "world", (force, torque)))
         if self._fields.wanted:
-            message = stamp_message(self.context, "sensor_msgs/MagneticField", self._link.name)
-            values = message.magnetic_field
-            values.x, values.y, values.z = field
-            self._fields.publish(message)
+            self._fields.publish(magnetic_message(self.context, self._link.name, field))
