@@ -12,13 +12,11 @@ import math
 from typing import Dict, List, Optional
 
 from ...geometry import inverse, transform
-from ..base import Plugin
 from ..context import Context, Joint, PluginError
-from ..standard_messages import joint_state_message
-from ..stepwise_change import StepwiseChange
 from .floor_rays import FloorRays, sensor_named
 from .odometry import Odometer, WheelCounter
-from .wheels import VelocityCommand
+from .velocity_drive import VelocityDrive
+from .wheels import WheelStates
 
 _COVARIANCE = (1e-3, 1e-3, 1e6, 1e6, 1e6, 1e3)
 _PATIENCE = 0.6                                 # s, for the next command
@@ -30,7 +28,7 @@ _CLIFFS = {"left_cliff_sensor": "cliff_left", "leftfront_cliff_sensor": "cliff_f
            "rightfront_cliff_sensor": "cliff_front_right", "right_cliff_sensor": "cliff_right"}
 
 
-class Create(Plugin):
+class Create(VelocityDrive):
     """Two driven wheels, two castors, a bumper, and rays to the wall and the floor."""
 
     def load(self) -> None:
@@ -45,11 +43,10 @@ class Create(Plugin):
         self._counter = WheelCounter(left, right, self._radius, self._separation)
         self._odometer = Odometer(context, "/odom", "odom", "base_footprint", _COVARIANCE,
                                   _COVARIANCE)
-        self._joints = [left, right, *self._castors()]
-        self._states = context.publish("/joint_states", "sensor_msgs/JointState")
+        self._states = WheelStates(context, [left, right, *self._castors()], motion=True,
+                                   topic="/joint_states", queue=1)
         hertz = p.number("updateRate", 0.0)
-        self._change = StepwiseChange(context, hertz, self._follow)
-        self._command = VelocityCommand(context, "cmd_vel", _PATIENCE, self._change)
+        self.follow_commands(hertz, "cmd_vel", _PATIENCE)
         self._sensors: Optional[CreateSensors] = None
         try:
             self._sensors = CreateSensors(context, left.parent, hertz)
@@ -57,7 +54,7 @@ class Create(Plugin):
             context.warn(f"no bumper, cliff and wall sensors: {missing}")
         self._last_ns = context.now_ns
         self.reset()
-        context.observe(hertz, self._publish, [*self._odometer.topics, self._states],
+        context.observe(hertz, self._publish, [*self._odometer.topics, *self._states.topics],
                         remembers=True)
 
     def _castors(self) -> List[Joint]:
@@ -68,28 +65,18 @@ class Create(Plugin):
         moving = {one.name for one in self.context.description.joints if one.type != "fixed"}
         return [self.context.joint(name) for name in names if name in moving]
 
-    def reset(self) -> None:
-        self._command.stop()
-        self._change.end()
+    def restart_odometry(self) -> None:
         self._counter.reset()
-        self.clock_set()
-        self._drive()
 
     def clock_set(self) -> None:
         """Count from the present time on."""
-        self._command.clock_set()
+        super().clock_set()
         self._last_ns = self.context.now_ns
         if self._sensors is not None:
             self._sensors.clock_set()
 
-    def _follow(self, dt: float) -> bool:
-        self._command.discard_if_expired()
-        self._drive()
-        return True
-
     def _drive(self) -> None:
-        turn = self._command.yaw * self._separation / 2.0
-        for wheel, speed in zip(self._wheels, (self._command.x - turn, self._command.x + turn)):
+        for wheel, speed in zip(self._wheels, self._command.wheel_speeds(self._separation)):
             wheel.drive(speed / self._radius, self._torque)
 
     def _publish(self) -> None:
@@ -97,10 +84,7 @@ class Create(Plugin):
         velocity = self._counter.count((now - self._last_ns) * 1e-9)
         self._last_ns = now
         self._odometer.publish(self._counter.pose, velocity)
-        if not self._states.wanted:
-            return
-        self._states.publish(joint_state_message(self.context, self._joints,
-                                                 efforts=[0.0] * len(self._joints)))
+        self._states.send()
 
 
 class CreateSensors:

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from typing import Tuple
 
-from ..stepwise_change import StepwiseChange
-from .odometry import Odometer, OdometryDrive, WheelCounter
-from .wheels import VelocityCommand
+from .odometry import WheelCounter
+from .velocity_drive import OdometryDrive
 
 _REACHED = 0.01  # m/s: a wheel that is so near to its speed has it (gazebo_plugins)
 
@@ -29,14 +28,10 @@ class DiffDrive(OdometryDrive):
         self._joints = (context.joint(p.text("leftJoint", "left_joint")),
                         context.joint(p.text("rightJoint", "right_joint")))
         self._counter = WheelCounter(*self._joints, self._radius, self._separation)
-        self._odometer = Odometer(
-            context, p.text("odometryTopic", "odom") if self._publishes else "",
-            p.text("odometryFrame", "odom"), p.text("robotBaseFrame", "base_footprint"))
+        self._odometer = self.make_odometer(publishes=self._publishes)
         self.offer_wheels(self._joints)
         hertz = p.number("updateRate", 100.0)
-        self._change = StepwiseChange(context, hertz, self._accelerate)
-        self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
-                                        change=self._change)
+        self.follow_commands(hertz)
         self.reset()
         # Encoders count at all updates, with and without subscribers.
         transforms = self._publishes and self._broadcasts or self._frames is not None
@@ -45,24 +40,18 @@ class DiffDrive(OdometryDrive):
                             remembers=self._encoder and self._publishes)
 
     def reset(self) -> None:
-        self._command.stop()
-        self._change.end()
-        self._counter.reset()
         self._instructed = [0.0, 0.0]
-        self.clock_set()
-        self._drive((0.0, 0.0))
+        super().reset()
 
-    def _accelerate(self, dt: float) -> bool:
+    def _follow(self, dt: float) -> bool:
         """Approach the command; return whether the wheel speeds have reached it."""
-        speeds, turn = self._speeds(dt), self._command.yaw * self._separation / 2.0
+        speeds = self._speeds(dt)
         self._drive(speeds)
-        return speeds == (self._command.x - turn, self._command.x + turn)
+        return speeds == self._command.wheel_speeds(self._separation)
 
     def _speeds(self, dt: float) -> Tuple[float, float]:
         """Of the rims, m/s, within the acceleration."""
-        command = self._command
-        turn = command.yaw * self._separation / 2.0
-        wanted = (command.x - turn, command.x + turn)
+        wanted = self._command.wheel_speeds(self._separation)
         if self._acceleration <= 0.0:
             return wanted
         present = [joint.velocity * self._radius for joint in self._joints]
@@ -77,6 +66,6 @@ class DiffDrive(OdometryDrive):
             self._instructed[n] = min(max(after, min(before, wanted[n])), max(before, wanted[n]))
         return self._instructed[0], self._instructed[1]
 
-    def _drive(self, speeds: Tuple[float, float]) -> None:
+    def _drive(self, speeds: Tuple[float, float] = (0.0, 0.0)) -> None:
         for joint, speed in zip(self._joints, speeds):
             joint.drive(speed / self._radius, self._torque)

@@ -15,16 +15,14 @@ from typing import Optional
 
 from ...engine.wrench_laws import VelocityForce
 from ...geometry import Vec3, rpy_from_quat
-from ..base import Plugin
 from ..context import PluginError
-from ..stepwise_change import StepwiseChange
-from .odometry import Odometer, planar_pose
-from .wheels import VelocityCommand
+from .odometry import planar_pose
+from .velocity_drive import VelocityDrive
 
 _STRAIGHT = 1e-4  # rad/s: at most this, a robot counts as moving straight (hector_gazebo)
 
 
-class ForceBasedMove(Plugin):
+class ForceBasedMove(VelocityDrive):
     """Pushes the link `<robotBaseFrame>`, or the model's first one."""
 
     watchdog = ("commandTimeoutDuration", 0.0)
@@ -46,19 +44,15 @@ class ForceBasedMove(Plugin):
         self._gains = (p.number("x_velocity_p_gain", self.usual_gains[0]),
                        p.number("y_velocity_p_gain", self.usual_gains[1]),
                        p.number("yaw_velocity_p_gain", self.usual_gains[2]))
-        self._odometer = Odometer(context, p.text("odometryTopic", "odom"),
-                                  p.text("odometryFrame", "odom"), base,
-                                  (1e-3, 1e-3, 1e12, 1e12, 1e12, 0.01),
-                                  (1e-3, 1e-3, 1e-3, 1e12, 1e12, 0.01))
+        self._odometer = self.make_odometer((1e-3, 1e-3, 1e12, 1e12, 1e12, 0.01),
+                                            (1e-3, 1e-3, 1e-3, 1e12, 1e12, 0.01))
         self._broadcasts = p.flag("publishOdometryTf", True)
         self._sideways = p.flag("allowLateralMotion", True)
         self._fastest = self.fastest()
         seconds = p.number(*self.watchdog)
-        self._change = StepwiseChange(context, 0.0, self._follow)
-        self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
-                                        None if seconds == self.never else seconds, self._change)
-        self._begin()
-        self._push()
+        self.follow_commands(0.0, timeout=None if seconds == self.never else seconds)
+        self.restart_odometry()
+        self._drive()
         hertz = p.number("odometryRate", 20.0)
         if hertz > 0.0:
             context.observe(hertz, self.publish, self._odometer.topics, transforms=self._broadcasts)
@@ -67,27 +61,12 @@ class ForceBasedMove(Plugin):
         """Upper limits of a command: m/s along x and y, rad/s about z."""
         return (math.inf, math.inf, math.inf)
 
-    def reset(self) -> None:
-        self._command.stop()
-        self._change.end()
-        self._begin()
-        self._push()
-
-    def clock_set(self) -> None:
-        """Commands expire by the new clock."""
-        self._command.clock_set()
-
-    def _begin(self) -> None:
-        """Odometry begins where the robot is, as in the original."""
+    def restart_odometry(self) -> None:
+        """Start the odometry at the pose of the robot, as in the original."""
         pose = self.context.pose
         self._start = (pose.position[0], pose.position[1], rpy_from_quat(pose.orientation)[2])
 
-    def _follow(self, dt: float) -> bool:
-        self._command.discard_if_expired()
-        self._push()
-        return True
-
-    def _push(self) -> None:
+    def _drive(self) -> None:
         command = self._command
         x, y, yaw = self._fastest
         self.context.set_wrench_law(self._base.name, VelocityForce(

@@ -11,14 +11,13 @@ from typing import Any, Dict, List, Tuple
 
 from ...geometry import compose, rpy_from_quat, scale
 from ...sensing.sensor_models import acceleration_between, measure_motion, velocity_at
-from ..base import Plugin
 from ..context import PluginError, Publication
 from ..frames import add_tf_prefix, stamp_message
 from ..standard_messages import diagonal_covariance, imu_message
-from ..stepwise_change import StepwiseChange
 from .floor_rays import FloorRays, sensor_named
 from .odometry import Odometer, WheelRotations, planar_pose
-from .wheels import VelocityCommand, WheelStates
+from .velocity_drive import VelocityDrive
+from .wheels import WheelStates
 
 _HERTZ = 50.0
 _COVARIANCE = (0.1, 0.1, 1e6, 1e6, 1e6, 0.05)
@@ -29,7 +28,7 @@ _SECTOR = math.pi / 6.0                         # half of a bumper's arc
 _READING, _READING_AT = 76123.0, 0.995          # of GazeboRosKobuki::updateCliffSensor
 
 
-class Kobuki(Plugin):
+class Kobuki(VelocityDrive):
     """Two driven wheels and what the base senses."""
 
     def load(self) -> None:
@@ -50,9 +49,8 @@ class Kobuki(Plugin):
         prefix = str(context.parameter("base_prefix", "mobile_base")).strip("/")
         hertz = p.number("update_rate", 0.0)
         hertz = hertz if hertz > 0.0 else _HERTZ
-        self._change = StepwiseChange(context, hertz, self._follow)
-        self._command = VelocityCommand(context, f"{prefix}/commands/velocity",
-                                        p.number("velocity_command_timeout", 0.6), self._change)
+        self.follow_commands(hertz, f"{prefix}/commands/velocity",
+                             p.number("velocity_command_timeout", 0.6))
         context.subscribe(f"{prefix}/commands/reset_odometry", "std_msgs/Empty",
                           lambda message: self._begin_count(), 10)
         self._imu_topic = context.publish(f"{prefix}/sensors/imu_data", "sensor_msgs/Imu")
@@ -74,18 +72,14 @@ class Kobuki(Plugin):
         self._powered = on
         self._change.begin()
 
-    def reset(self) -> None:
-        self._command.stop()
-        self._change.end()
+    def restart_odometry(self) -> None:
         self._begin_count()
         self._turns.restart()
         self._heading = self._yaw()
-        self.clock_set()
-        self._drive()
 
     def clock_set(self) -> None:
         """Compute accelerations from the present time and velocity on."""
-        self._command.clock_set()
+        super().clock_set()
         self._last_ns, self._before = self.context.now_ns, self._imu_velocity()
         self._events.clock_set()
 
@@ -109,11 +103,6 @@ class Kobuki(Plugin):
         self._states.send()
         self._publish_odometry(dt)
         self._publish_imu(dt)
-
-    def _follow(self, dt: float) -> bool:
-        self._command.discard_if_expired()
-        self._drive()
-        return True
 
     def _publish_odometry(self, dt: float) -> None:
         """Publish odometry; the heading is that of the gyroscope, as on the real base."""
@@ -142,9 +131,9 @@ class Kobuki(Plugin):
         self._imu_topic.publish(message)
 
     def _drive(self) -> None:
-        x, yaw = (self._command.x, self._command.yaw) if self._powered else (0.0, 0.0)
-        for wheel, sign in zip(self._wheels, (-1.0, 1.0)):
-            wheel.drive((x + sign * yaw * self._separation / 2.0) / self._radius, self._torque)
+        speeds = self._command.wheel_speeds(self._separation) if self._powered else (0.0, 0.0)
+        for wheel, speed in zip(self._wheels, speeds):
+            wheel.drive(speed / self._radius, self._torque)
 
 
 class KobukiEvents:

@@ -5,14 +5,13 @@ import math
 from typing import List, Optional, Sequence, Tuple
 
 from ...geometry import Pose, Twist, quat_from_rpy, rpy_from_quat
-from ..base import Plugin
 from ..context import Context, Joint, Publication
 from ..frames import add_tf_prefix
 from ..standard_messages import diagonal_covariance, odometry_message
-from .wheels import WheelFrames, WheelStates
 
 _UNKNOWN_VARIANCE = 1e12  # of what a wheeled robot does not measure
 
+NO_COVARIANCE = (0.0,) * 6
 DRIVE_COVARIANCE = (1e-5, 1e-5, _UNKNOWN_VARIANCE, _UNKNOWN_VARIANCE, _UNKNOWN_VARIANCE, 1e-3)
 
 
@@ -109,7 +108,7 @@ class Odometer:
 
     def __init__(self, context: Context, topic: str, frame: str, base: str,
                  covariance: Tuple[float, ...] = DRIVE_COVARIANCE,
-                 twist_covariance: Tuple[float, ...] = (0.0,) * 6) -> None:
+                 twist_covariance: Tuple[float, ...] = NO_COVARIANCE) -> None:
         self._context = context
         self._frames = (add_tf_prefix(context, frame), add_tf_prefix(context, base))
         self._topic = context.publish(topic, "nav_msgs/Odometry") if topic else None
@@ -134,56 +133,3 @@ class Odometer:
         if yaw_variance is not None:
             message.pose.covariance[35] = message.twist.covariance[35] = yaw_variance
         self._topic.publish(message)
-
-
-class OdometryDrive(Plugin):
-    """Integrates wheel odometry, and publishes it or the true motion."""
-
-    _counter: WheelCounter
-    _odometer: Odometer
-    _encoder: bool   # publish wheel odometry, else the true pose
-    _publishes = _broadcasts = True
-
-    def offer_wheels(self, joints: Sequence[Joint], with_motion: bool = False) -> None:
-        """Publish frames and joint states of the wheels if the parameters ask for it."""
-        context, p = self.context, self.context.parameters
-        self._frames = WheelFrames(context, joints) if p.flag("publishWheelTF", False) else None
-        self._states = WheelStates(context, joints, with_motion) \
-            if p.flag("publishWheelJointState", False) else None
-
-    @property
-    def topics(self) -> List[Publication]:
-        """All that `publish` writes to."""
-        return [*self._odometer.topics, *(self._states.topics if self._states else [])]
-
-    def publish(self) -> None:
-        """Odometry, as it is before the command of the same update (as the original)."""
-        if self._publishes:
-            pose, velocity = self.motion()
-            if self._broadcasts:
-                self._odometer.transform(pose)
-            self._odometer.publish(pose, velocity)
-        if self._frames is not None:
-            self._frames.send()
-        if self._states is not None:
-            self._states.send()
-
-    def clock_set(self) -> None:
-        """Measure time from now; keep the odometry pose."""
-        self._last_ns = self.context.now_ns
-        self._counter.discard_rotation()
-
-    def elapsed(self) -> float:
-        """Sim time since the last call, or since `clock_set`, s."""
-        before, self._last_ns = self._last_ns, self.context.now_ns
-        return (self._last_ns - before) * 1e-9
-
-    def motion(self) -> Tuple[Pose, Tuple[float, float, float]]:
-        """Return the pose and the (forward, sideways, yaw) velocity to publish.
-
-        The velocity of encoders is the mean since the last call.
-        """
-        if self._encoder:
-            velocity = self._counter.count(self.elapsed())
-            return self._counter.pose, velocity
-        return self.context.pose, in_base(self.context.pose, self.context.twist)

@@ -9,49 +9,33 @@ import math
 from typing import Tuple
 
 from ...geometry import Pose, Twist, rpy_from_quat
-from ..base import Plugin
-from ..stepwise_change import StepwiseChange
-from .odometry import Odometer, in_base
-from .wheels import VelocityCommand
+from .odometry import in_base
+from .velocity_drive import VelocityDrive
 
 
-class PlanarMove(Plugin):
+class PlanarMove(VelocityDrive):
     """Moves a model in its own x and y, and about the vertical."""
 
     def load(self) -> None:
         context, p = self.enter_namespace()
-        self._odometer = Odometer(context, p.text("odometryTopic", "odom"),
-                                  p.text("odometryFrame", "odom"),
-                                  p.text("robotBaseFrame", "base_footprint"))
+        self._odometer = self.make_odometer()
         timeout = p.number("cmdTimeout", -1.0)
-        self._change = StepwiseChange(context, 100.0 if timeout < 0.0 else 0.0, self._follow)
-        self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
-                                        timeout if timeout >= 0.0 else None, self._change)
+        self.follow_commands(100.0 if timeout < 0.0 else 0.0,
+                             timeout=timeout if timeout >= 0.0 else None)
         self._last: Tuple[int, Pose] = (context.now_ns, context.pose)
         hertz = p.number("odometryRate", 20.0)
         if hertz > 0.0:
             context.observe(hertz, self.publish, self._odometer.topics, transforms=True,
                             resume=self.clock_set)
-        self.move()
-
-    def reset(self) -> None:
-        self._command.stop()
-        self._change.end()
-        self.clock_set()
-        self.move()
+        self._drive()
 
     def clock_set(self) -> None:
         """Compute velocities from the present time and pose on."""
-        self._command.clock_set()
+        super().clock_set()
         self._last = (self.context.now_ns, self.context.pose)
 
-    def _follow(self, dt: float) -> bool:
-        self.move()
-        return True
-
-    def move(self) -> None:
+    def _drive(self) -> None:
         """Pass the command to the engine, which applies it in every step."""
-        self._command.discard_if_expired()
         self.context.set_planar_velocity(self._command.x, self._command.y, self._command.yaw)
 
     def publish(self) -> None:

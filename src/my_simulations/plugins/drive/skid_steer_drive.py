@@ -4,15 +4,13 @@ Parameters, defaults, topics and laws are those of gazebo_plugins.
 """
 from __future__ import annotations
 
-from ..base import Plugin
-from ..stepwise_change import StepwiseChange
-from .odometry import Odometer, in_base
-from .wheels import VelocityCommand
+from .odometry import in_base
+from .velocity_drive import VelocityDrive
 
 _CORNERS = ("leftFront", "rightFront", "leftRear", "rightRear")
 
 
-class SkidSteerDrive(Plugin):
+class SkidSteerDrive(VelocityDrive):
     def load(self) -> None:
         context, p = self.enter_namespace()
         self._separation = p.positive("wheelSeparation", 0.4)
@@ -22,21 +20,12 @@ class SkidSteerDrive(Plugin):
                         for corner in _CORNERS]
         unsure = (p.number("covariance_x", 1e-4), p.number("covariance_y", 1e-4), 1e12, 1e12,
                   1e12, p.number("covariance_yaw", 1e-2))
-        self._odometer = Odometer(context, p.text("odometryTopic", "odom"),
-                                  p.text("odometryFrame", "odom"),
-                                  p.text("robotBaseFrame", "base_footprint"), unsure, unsure)
+        self._odometer = self.make_odometer(unsure, unsure)
         self._broadcasts = p.flag("broadcastTF", False)
         hertz = p.number("updateRate", 100.0)
-        self._change = StepwiseChange(context, hertz, self._follow)
-        self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
-                                        change=self._change)
+        self.follow_commands(hertz)
         self.reset()
         context.observe(hertz, self.publish, self._odometer.topics, transforms=self._broadcasts)
-
-    def reset(self) -> None:
-        self._command.stop()
-        self._change.end()
-        self._drive()
 
     def publish(self) -> None:
         pose = self.context.pose
@@ -46,14 +35,8 @@ class SkidSteerDrive(Plugin):
         self._odometer.publish(pose._replace(position=(x, y, 0.0)),
                                in_base(pose, self.context.twist))
 
-    def _follow(self, dt: float) -> bool:
-        self._drive()
-        return True
-
     def _drive(self) -> None:
-        turn = self._command.yaw * self._separation / 2.0
-        for n, joint in enumerate(self._joints):
-            speed = self._command.x + (turn if n % 2 else -turn)
+        for joint, speed in zip(self._joints, 2 * self._command.wheel_speeds(self._separation)):
             joint.drive(speed / self._radius, self._torque)
 
 

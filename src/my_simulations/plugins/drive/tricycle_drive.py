@@ -15,9 +15,8 @@ from typing import Tuple
 from ...engine.drive_commands import JointServo
 from ...geometry import inverse, transform
 from ..context import Joint
-from ..stepwise_change import StepwiseChange
-from .odometry import Odometer, OdometryDrive, WheelCounter
-from .wheels import VelocityCommand
+from .odometry import WheelCounter
+from .velocity_drive import OdometryDrive
 
 _MOST_STEERING = math.pi / 2.0
 _SAME_ANGLE = 1e-6   # rad
@@ -42,14 +41,10 @@ class TricycleDrive(OdometryDrive):
         self._counter = WheelCounter(*self._by_side(left, right),
                                      p.positive("encoderWheelDiameter", 0.15) / 2.0,
                                      p.positive("encoderWheelSeparation", 0.5))
-        self._odometer = Odometer(context, p.text("odometryTopic", "odom"),
-                                  p.text("odometryFrame", "odom"),
-                                  p.text("robotBaseFrame", "base_link"))
+        self._odometer = self.make_odometer(base="base_link")
         self.offer_wheels((self._steering, self._wheel, left, right), with_motion=True)
         hertz = p.number("updateRate", 100.0)
-        self._change = StepwiseChange(context, hertz, self._follow)
-        self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
-                                        change=self._change)
+        self.follow_commands(hertz)
         self.reset()
         context.observe(hertz, self.publish, self.topics, transforms=True,
                         remembers=self._encoder)
@@ -61,13 +56,10 @@ class TricycleDrive(OdometryDrive):
                       for joint in (left, right))
         return (left, right) if one >= other else (right, left)
 
-    def reset(self) -> None:
-        self._command.stop()
-        self._change.end()
-        self._counter.reset()
-        self.clock_set()
+    def _drive(self) -> None:
+        """Stop the wheel, and turn the steering to 0."""
         self._wheel.drive(0.0, self._torque)
-        self._change.begin()   # turns the steering to 0
+        self._change.begin()
 
     def _follow(self, dt: float) -> bool:
         """Approach the command; return whether motor and servo have reached it."""

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, List, Optional, Sequence
+from typing import Any, List, Optional, Sequence, Tuple
 
 from ...geometry import compose, inverse
 from ..context import CallHandle, Context, Joint, Publication
@@ -50,6 +50,11 @@ class VelocityCommand:
             self._begin_expiry()
             self._change.begin()
 
+    def wheel_speeds(self, separation: float) -> Tuple[float, float]:
+        """Return the speeds of a left and a right wheel with a distance (m) between them, m/s."""
+        turn = self.yaw * separation / 2.0
+        return self.x - turn, self.x + turn
+
     def discard_if_expired(self) -> None:
         if self._time_out is not None and self._time_out.is_over:
             self.stop()
@@ -83,11 +88,11 @@ class WheelStates:
     """Publishes sensor_msgs/JointState of the wheels."""
 
     def __init__(self, context: Context, joints: Sequence[Joint], motion: bool = False,
-                 frame: str = "") -> None:
+                 frame: str = "", topic: str = "joint_states", queue: int = 1000) -> None:
         """`motion`: with velocities; `frame`: of the header."""
         self._context, self._joints, self._motion = context, list(joints), motion
         self._frame = frame
-        self._topic = context.publish("joint_states", "sensor_msgs/JointState", 1000)
+        self._topic = context.publish(topic, "sensor_msgs/JointState", queue)
         self.topics: List[Publication] = [self._topic]
 
     def send(self) -> None:
