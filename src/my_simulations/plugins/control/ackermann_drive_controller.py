@@ -40,7 +40,7 @@ class AckermannDriveController(BaseController):
             (self.claim_joint(VELOCITY, s.text(f"{name}_wheel", f"{name}_wheel_joint")),
              self.claim_joint(POSITION, s.text(f"{name}_steer", f"{name}_steer_joint")))
                          for name in _CORNERS]
-        self._middle = [self.claim_joint(VELOCITY, s.text(f"{name}_wheel", f"{name}_wheel_joint"))
+        self.counted = [self.claim_joint(VELOCITY, s.text(f"{name}_wheel", f"{name}_wheel_joint"))
                         for name in _MIDDLE]
         self._radius = s.number("wheel_radius", 0.0)
         self._width = s.number("mid_wheel_lat_separation", 0.0)
@@ -58,16 +58,12 @@ class AckermannDriveController(BaseController):
             angle, rim = compute_wheel_motion(x, y, speed, yaw_rate)
             steer.command(angle)
             wheel.command(rim / self._radius)
-        for wheel, side in zip(self._middle, (0.5, -0.5)):
+        for wheel, side in zip(self.counted, (0.5, -0.5)):
             wheel.command((speed - yaw_rate * side * self._width) / self._radius)
-
-    def begin_count(self) -> None:
-        self._turned = [wheel.position for wheel in self._middle]
 
     def displacement(self, dt: float) -> Planar:
         """Return the motion of the base from the rotation of the middle wheels."""
         if self.open_loop:
             return self.last[0] * dt, 0.0, self.last[2] * dt
-        before, self._turned = self._turned, [wheel.position for wheel in self._middle]
-        left, right = ((now - then) * self._radius for now, then in zip(self._turned, before))
+        left, right = (turn * self._radius for turn in self.count_rotations())
         return (left + right) / 2.0, 0.0, (right - left) / self._width

@@ -20,9 +20,11 @@ class AckermannSteeringController(BaseController):
         s = self.settings
         self._wheel = self.claim_joint(VELOCITY, s.text("rear_wheel", "rear_wheel_joint"))
         self._steer = self.claim_joint(POSITION, s.text("front_steer", "front_steer_joint"))
-        base, radius = s.number("wheel_separation_h", 0.0), s.number("wheel_radius", 0.0)
+        self.counted = [self._wheel]
+        base = s.number("wheel_separation_h", 0.0)
         if s.get("wheel_separation_h") is None:
             base = abs(self._place(self._steer) - self._place(self._wheel))
+        radius = s.number("wheel_radius", 0.0)
         if s.get("wheel_radius") is None:
             radius = self.radius_of(self.context.joint(self._wheel.name).spec)
         self._base = base * s.number("wheel_separation_h_multiplier", 1.0)
@@ -41,15 +43,11 @@ class AckermannSteeringController(BaseController):
         self._wheel.command(velocity[0] / self._radius)
         self._steer.command(velocity[2])
 
-    def begin_count(self) -> None:
-        self._turned = self._wheel.position
-
     def displacement(self, dt: float) -> Planar:
         """Return the motion of the rear wheel about the centre on the front wheel's axis."""
         if self.open_loop:
             forward, angle = self.last[0] * dt, self.last[2]
         else:
-            before, self._turned = self._turned, self._wheel.position
-            forward, angle = ((self._turned - before) * self._counted_radius,
+            forward, angle = (self.count_rotations()[0] * self._counted_radius,
                               self._steer.position * self._scale)
         return forward, 0.0, forward * math.tan(angle) / self._base

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from typing import Any, Deque, List, Optional, Tuple
+from typing import Any, Deque, List, Optional, Sequence, Tuple
 
 from ...description.model import Joint as JointSpec
 from ...description.shapes import Cylinder, Sphere
-from ...geometry import Vec3, transform
+from ...geometry import Vec3
 from ..context import CallHandle, PluginError, Publication
 from ..drive.odometry import planar_pose, planar_twist
 from ..frames import stamp_message
@@ -20,6 +20,8 @@ from ..standard_messages import diagonal_covariance, odometry_message
 from ..stepwise_change import StepwiseChange
 from ..time_out import TimeOut
 from .controller import Controller
+from .hardware import HardwareJoint
+from .limits import joint_origin
 from .speed_limits import read_speed_limits
 
 _UPDATE_HZ = 100.0
@@ -54,7 +56,10 @@ class BaseController(Controller):
         goes_sideways: a command's `linear.y` is used.
         publish_hz, hertz: how often odometry is published, and commands are applied, Hz.
         broadcasts: whether the transform is published.
+        counted: the joints whose rotation gives the odometry.
     """
+
+    counted: Sequence[HardwareJoint] = ()
 
     smooths = True
     goes_sideways = False
@@ -70,7 +75,14 @@ class BaseController(Controller):
         raise NotImplementedError
 
     def begin_count(self) -> None:
-        """Store the present joint positions as the start of the odometry."""
+        """Store the positions of `counted` as the start of the odometry."""
+        self._turned = [joint.position for joint in self.counted]
+
+    def count_rotations(self) -> List[float]:
+        """Return how far each of `counted` has turned since the last call, rad."""
+        before = self._turned
+        BaseController.begin_count(self)
+        return [now - then for now, then in zip(self._turned, before)]
 
     def displacement(self, dt: float) -> Planar:
         """Return the motion of the base in the last `dt` s from its wheels: m, m, rad."""
@@ -220,10 +232,13 @@ class BaseController(Controller):
 
     def joint_location(self, joint: JointSpec) -> Vec3:
         """Return the position of a joint in the model frame at joint positions 0, m."""
-        for link in self.context.description.links:
-            if link.name == joint.child:
-                return transform(link.pose, joint.pose.position)
-        raise PluginError(f"joint '{joint.name}' has no child link")
+        return joint_origin(joint, self.context.description)
+
+    def wheel_radius(self, joint: JointSpec) -> float:
+        """Return the parameter `wheel_radius`, else the radius of a wheel (`radius_of`), m."""
+        if self.settings.get("wheel_radius") is None:
+            return self.radius_of(joint)
+        return self.settings.number("wheel_radius")
 
     def radius_of(self, joint: JointSpec, rollers: bool = False) -> float:
         """Return the radius of a wheel's cylinder or sphere, m; `rollers`: of one of its rollers.

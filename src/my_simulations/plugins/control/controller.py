@@ -26,7 +26,10 @@ class Controller:
         period: s between updates that the user has asked for; 0 for none.
         state: "initialized", "running" or "stopped".
         claimed: joints by interface.
+        interface: for controllers of a package such as position_controllers.
     """
+
+    interface = ""
 
     def __init__(self, name: str, context: Context, hardware: Hardware, period: float) -> None:
         self.name, self.context, self.hardware, self.period = name, context, hardware, period
@@ -48,6 +51,10 @@ class Controller:
 
     def stop(self) -> None:
         """Stop the controller; its joints are released afterwards."""
+
+    def update_hz(self, most: float) -> float:
+        """Return the rate that the user has asked for, but at most `most`, Hz."""
+        return min(most, 1.0 / self.period) if self.period else most
 
     def claim_joint(self, interface: str, name: str) -> HardwareJoint:
         """Claim a joint. Raises PluginError."""

@@ -58,6 +58,7 @@ class DiffDriveController(BaseController):
             raise PluginError(f"{self.name} has {len(names[0])} left and {len(names[1])} right"
                               " wheels")
         self._sides = [[self.claim_joint(VELOCITY, name) for name in side] for side in names]
+        self.counted = [wheel for side in self._sides for wheel in side]
         self._read_geometry(names[0][0], names[1][0])
         self._states: Optional[WheelStates] = None
         if s.flag("publish_wheel_joint_controller_state", False):
@@ -66,12 +67,10 @@ class DiffDriveController(BaseController):
 
     def _read_geometry(self, left: str, right: str) -> None:
         s = self.settings
-        separation, radius = s.number("wheel_separation", 0.0), s.number("wheel_radius", 0.0)
         joints = [self.context.joint(name).spec for name in (left, right)]
-        if s.get("wheel_separation") is None:
-            separation = norm(subtract(*map(self.joint_location, joints)))
-        if s.get("wheel_radius") is None:
-            radius = self.radius_of(joints[0])
+        separation = s.number("wheel_separation",
+                              norm(subtract(*map(self.joint_location, joints))))
+        radius = self.wheel_radius(joints[0])
         factors = [s.number(name, 1.0) for name in _MULTIPLIERS]
         if s.get("wheel_radius_multiplier") is not None:
             factors[:2] = [s.number("wheel_radius_multiplier", 0.0)] * 2
@@ -102,21 +101,14 @@ class DiffDriveController(BaseController):
             for wheel in side:
                 wheel.command(rate)
 
-    def begin_count(self) -> None:
-        self._turned = [_mean_position(side) for side in self._sides]
-
     def displacement(self, dt: float) -> Planar:
         """Return the motion of the base from the rotation of the wheels."""
         if self.open_loop:
             return self.last[0] * dt, 0.0, self.last[2] * dt
-        before, self._turned = self._turned, [_mean_position(side) for side in self._sides]
-        left, right = (radius * (now - then) for radius, now, then in zip(
-            self._radii, self._turned, before))
+        turned, count = self.count_rotations(), len(self._sides[0])
+        left, right = (radius * sum(turns) / count for radius, turns in zip(
+            self._radii, (turned[:count], turned[count:])))
         return (left + right) / 2.0, 0.0, (right - left) / self._separation
-
-
-def _mean_position(wheels: List[HardwareJoint]) -> float:
-    return sum(wheel.position for wheel in wheels) / len(wheels)
 
 
 class WheelStates:

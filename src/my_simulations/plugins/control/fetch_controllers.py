@@ -20,7 +20,7 @@ from ..transforms import Transforms
 from .controller import RUNNING, Controller
 from .diff_drive_controller import DiffDriveController
 from .hardware import POSITION, VELOCITY
-from .joint_trajectory import VelocityTrajectory
+from .joint_trajectory import JointTrajectory
 from .settings import Settings
 
 _LOOK_HZ = 50.0
@@ -47,8 +47,10 @@ class FetchController(Controller):
         return Settings(self.context, f"gazebo/{name}").gains("position") or PidGains(0.0)
 
 
-class FetchTrajectory(VelocityTrajectory, FetchController):
+class FetchTrajectory(JointTrajectory, FetchController):
     """FollowJointTrajectoryController: a position loop commands rates."""
+
+    interface = VELOCITY
 
     @property
     def action_name(self) -> str:

@@ -4,13 +4,11 @@ from __future__ import annotations
 from typing import Any, List
 
 from .controller import Controller
-from .hardware import EFFORT, POSITION, VELOCITY, HardwareJoint
+from .hardware import HardwareJoint
 
 
 class ForwardCommandController(Controller):
     """Forwards std_msgs/Float64 on `command` to the joint in the parameter `joint`."""
-
-    interface = ""
 
     def load(self) -> None:
         self._joint = self.claim_joint(self.interface, self.settings.text("joint"))
@@ -26,8 +24,6 @@ class ForwardCommandController(Controller):
 
 class ForwardGroupController(Controller):
     """Forwards std_msgs/Float64MultiArray on `command` to the joints in the parameter `joints`."""
-
-    interface = ""
 
     def load(self) -> None:
         self.joints: List[HardwareJoint] = [self.claim_joint(self.interface, name)
@@ -49,39 +45,3 @@ class ForwardGroupController(Controller):
 
     def command(self, joint: HardwareJoint, value: float) -> None:
         joint.command(value)
-
-
-class ForwardPositionController(ForwardCommandController):
-    """position_controllers/JointPositionController."""
-
-    interface = POSITION
-
-
-class ForwardVelocityController(ForwardCommandController):
-    """velocity_controllers/JointVelocityController."""
-
-    interface = VELOCITY
-
-
-class ForwardEffortController(ForwardCommandController):
-    """effort_controllers/JointEffortController."""
-
-    interface = EFFORT
-
-
-class ForwardPositionGroupController(ForwardGroupController):
-    """position_controllers/JointGroupPositionController."""
-
-    interface = POSITION
-
-
-class ForwardVelocityGroupController(ForwardGroupController):
-    """velocity_controllers/JointGroupVelocityController."""
-
-    interface = VELOCITY
-
-
-class ForwardEffortGroupController(ForwardGroupController):
-    """effort_controllers/JointGroupEffortController."""
-
-    interface = EFFORT

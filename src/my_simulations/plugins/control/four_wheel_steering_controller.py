@@ -83,16 +83,14 @@ class FourWheelSteeringController(BaseController):
 
     def load_wheels(self) -> None:
         s = self.settings
-        self._wheels = self._pairs(VELOCITY, "front_wheel", "rear_wheel")
+        self.counted = self._pairs(VELOCITY, "front_wheel", "rear_wheel")
         self._steers = self._pairs(POSITION, "front_steering", "rear_steering")
-        wheels = [self.context.joint(one.name).spec for one in self._wheels]
+        wheels = [self.context.joint(one.name).spec for one in self.counted]
         steer = self.context.joint(self._steers[0].name).spec
         at = [self.joint_location(joint) for joint in wheels]
         track = s.number("track", _distance(at[0], at[1]))
         base = s.number("wheel_base", _distance(at[0], at[2]))
-        radius = s.get("wheel_radius")
-        self._radius = self.radius_of(wheels[0]) if radius is None else s.number(
-            "wheel_radius", 0.0)
+        self._radius = self.wheel_radius(wheels[0])
         self._base, self._by_angles = base, False
         offset = _distance(at[0], self.joint_location(steer))
         self.positive(track=track, wheel_base=base, wheel_radius=self._radius,
@@ -138,7 +136,7 @@ class FourWheelSteeringController(BaseController):
         """Steer each wheel at right angles to the line to the centre of the turn, and drive it."""
         motions = self._by_two_angles(*velocity) if self._by_angles else self._by_twist(
             velocity[0], velocity[2])
-        for wheel, steer, (angle, speed) in zip(self._wheels, self._steers, motions):
+        for wheel, steer, (angle, speed) in zip(self.counted, self._steers, motions):
             steer.command(angle)
             wheel.command(speed / self._radius)
 
@@ -164,17 +162,13 @@ class FourWheelSteeringController(BaseController):
         return [(angle, rim * moving) for angle, rim in angles]
 
     def begin_count(self) -> None:
-        self._turned = self._positions()
+        super().begin_count()
         self._changes: Deque[Tuple[float, float, float, float]] = deque(maxlen=self.window)
         self._state = (0.0, 0.0, 0.0)
 
-    def _positions(self) -> List[float]:
-        return [wheel.position for wheel in self._wheels]
-
     def displacement(self, dt: float) -> Planar:
         """Return the motion of the base from rotation and steering angles of all wheels."""
-        before, self._turned = self._turned, self._positions()
-        ways = [(now - then) * self._radius for now, then in zip(self._turned, before)]
+        ways = [turn * self._radius for turn in self.count_rotations()]
         angles = [steer.position for steer in self._steers]
         found = fitted_motion(self._corners, list(zip(angles, ways)))
         self._note(math.copysign(math.hypot(*found[:2]), found[0]) / dt, angles, dt)

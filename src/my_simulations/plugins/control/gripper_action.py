@@ -10,15 +10,13 @@ from ..finite_messages import is_all_finite
 from ..stepwise_change import StepwiseChange
 from ..time_out import TimeOut
 from .controller import RUNNING, Controller
-from .hardware import EFFORT, POSITION
+from .hardware import EFFORT
 
 _LOOK_HZ = 100.0
 
 
 class Gripper(Controller):
     """One joint that opens and closes."""
-
-    interface = ""
 
     def load(self) -> None:
         s = self.settings
@@ -33,9 +31,7 @@ class Gripper(Controller):
         self._still = s.number("stall_velocity_threshold", 0.001)
         self._stall = TimeOut(self.context, s.number("stall_timeout", 1.0))
         self._goal: Optional[Goal] = None
-        self._watch = StepwiseChange(
-            self.context, min(_LOOK_HZ, 1.0 / self.period) if self.period else _LOOK_HZ,
-            self._check_goal)
+        self._watch = StepwiseChange(self.context, self.update_hz(_LOOK_HZ), self._check_goal)
         self._wanted, self._most = 0.0, self._default_effort
         self._action = ActionServer(self.context, f"{self.name}/gripper_cmd",
                                     "control_msgs/GripperCommand", self._start_goal,
@@ -110,15 +106,3 @@ class Gripper(Controller):
         result.effort = self.hardware.efforts([self._joint.name])[0]
         result.stalled, result.reached_goal = stalled, reached
         return result
-
-
-class PositionGripper(Gripper):
-    """position_controllers/GripperActionController."""
-
-    interface = POSITION
-
-
-class EffortGripper(Gripper):
-    """effort_controllers/GripperActionController."""
-
-    interface = EFFORT

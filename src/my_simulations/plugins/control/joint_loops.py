@@ -9,7 +9,7 @@ from ...engine.servo_law import wrapped_angle
 from ..frames import stamp_message
 from .controller import Controller
 from .forward import ForwardGroupController
-from .hardware import EFFORT, VELOCITY, HardwareJoint
+from .hardware import HardwareJoint
 
 _STATE_HZ = 100.0   # of sim time: the originals tell each tenth update, at 1 kHz
 
@@ -20,7 +20,6 @@ class JointLoop(Controller):
     The state's command is the effort of the last step, so it is 0 for loops that give a rate.
     """
 
-    interface = EFFORT
     of_rate = False
 
     def load(self) -> None:
@@ -38,8 +37,8 @@ class JointLoop(Controller):
     def start(self) -> None:
         """Hold the position, or command 0."""
         self._set_target(0.0 if self.of_rate else self._joint.position)
-        self.observe(min(_STATE_HZ, 1.0 / self.period) if self.period else _STATE_HZ,
-                     self._publish_state, [self._state], efforts=[self._joint.name])
+        self.observe(self.update_hz(_STATE_HZ), self._publish_state, [self._state],
+                     efforts=[self._joint.name])
 
     def _set_target(self, wanted: float) -> None:
         self._wanted = wanted if self.of_rate else clamp_to_limits(self._joint, wanted)
@@ -60,26 +59,14 @@ class JointLoop(Controller):
         self._state.publish(message)
 
 
-class EffortPositionLoop(JointLoop):
-    """effort_controllers/JointPositionController."""
-
-
-class EffortVelocityLoop(JointLoop):
+class JointVelocityLoop(JointLoop):
     """effort_controllers/JointVelocityController."""
 
     of_rate = True
 
 
-class VelocityPositionLoop(JointLoop):
-    """velocity_controllers/JointPositionController."""
-
-    interface = VELOCITY
-
-
-class EffortPositionGroup(ForwardGroupController):
+class JointPositionGroup(ForwardGroupController):
     """effort_controllers/JointGroupPositionController: gains in JOINT/pid."""
-
-    interface = EFFORT
 
     def load(self) -> None:
         super().load()

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Any, List, Sequence, Tuple, Union
 
-from ..context import Context, Joint, PluginError
+from ..context import Context, Joint
 from ..frames import stamp_message
 from ..standard_messages import joint_state_message
 from .controller import Controller
@@ -30,9 +30,7 @@ class JointStateController(Controller):
         """Find the joints, the rate, and joints that are not there but are to be published."""
         names = self.settings.texts("joints", sorted(self.hardware.names))
         self._joints = [self.hardware.state(name) for name in names]
-        if self.settings.get("publish_rate") is None:
-            raise PluginError(f"parameter {self.name}/publish_rate is missing")
-        self._rate = self.settings.number("publish_rate", 0.0)
+        self._rate = self.settings.number("publish_rate")
         self._extra = self._extras(names)
         self._topic = self.context.publish("joint_states", "sensor_msgs/JointState", 4)
         self.keep(self._topic)

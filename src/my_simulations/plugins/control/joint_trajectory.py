@@ -14,7 +14,7 @@ from ...engine.spline import Spline, constant_segment, segment_between
 from ..actions import ActionServer, Goal
 from ..context import CallHandle, RequestError
 from .controller import RUNNING, Controller
-from .hardware import EFFORT, POSITION, VELOCITY, HardwareJoint
+from .hardware import POSITION, HardwareJoint
 from .trajectory import (
     GOAL_TOLERANCE_VIOLATED,
     PATH_TOLERANCE_VIOLATED,
@@ -33,8 +33,6 @@ _ACTION = "control_msgs/FollowJointTrajectory"
 
 class JointTrajectory(Controller):
     """The joints in the parameter `joints`."""
-
-    interface = ""
 
     @property
     def action_name(self) -> str:
@@ -173,8 +171,7 @@ class JointTrajectory(Controller):
                                                self._feedforward):
             _follow(joint, spline, gains, ahead, self._time(spline))
         if self._watch is None and self._moves():
-            self._watch = self.context.every(
-                min(_LOOK_HZ, 1.0 / self.period) if self.period else _LOOK_HZ, self._check_goal)
+            self._watch = self.context.every(self.update_hz(_LOOK_HZ), self._check_goal)
 
     # -- while it moves ----------------------------------------------------------------------------
 
@@ -317,24 +314,6 @@ class _Following:
         self.goal, self.path, self.end, self.late = goal, path, end, late
         self.arrived: Set[int] = set()
         self.told_ns = 0
-
-
-class PositionTrajectory(JointTrajectory):
-    """position_controllers/JointTrajectoryController."""
-
-    interface = POSITION
-
-
-class VelocityTrajectory(JointTrajectory):
-    """velocity_controllers/JointTrajectoryController."""
-
-    interface = VELOCITY
-
-
-class EffortTrajectory(JointTrajectory):
-    """effort_controllers/JointTrajectoryController."""
-
-    interface = EFFORT
 
 
 def _of_joints(places: Sequence[int], tolerances: Sequence[Tolerance]) -> List[Tolerance]:

@@ -5,34 +5,34 @@ Source: ros_control, controller_manager. Switches happen at once, also while the
 from __future__ import annotations
 
 import importlib
-from typing import Any, Callable, Dict, List, Mapping, Optional, Type
+from typing import Any, Callable, Dict, List, Mapping, Type
 
 from ..context import Context, PluginError
 from .controller import RUNNING, Controller
-from .hardware import Hardware
+from .hardware import EFFORT, POSITION, VELOCITY, Hardware
 
 STRICT, BEST_EFFORT = 2, 1
 _MESSAGES = "controller_manager_msgs"
 
 TYPES: Mapping[str, str] = {
     "joint_state_controller/JointStateController": "joint_state:JointStateController",
-    "position_controllers/JointPositionController": "forward:ForwardPositionController",
-    "position_controllers/JointGroupPositionController": "forward:ForwardPositionGroupController",
-    "position_controllers/JointTrajectoryController": "joint_trajectory:PositionTrajectory",
-    "position_controllers/ScaledJointTrajectoryController": "joint_trajectory:PositionTrajectory",
-    "position_controllers/GripperActionController": "gripper_action:PositionGripper",
-    "velocity_controllers/JointVelocityController": "forward:ForwardVelocityController",
-    "velocity_controllers/JointGroupVelocityController": "forward:ForwardVelocityGroupController",
-    "velocity_controllers/JointPositionController": "joint_loops:VelocityPositionLoop",
-    "velocity_controllers/JointTrajectoryController": "joint_trajectory:VelocityTrajectory",
-    "velocity_controllers/ScaledJointTrajectoryController": "joint_trajectory:VelocityTrajectory",
-    "effort_controllers/JointEffortController": "forward:ForwardEffortController",
-    "effort_controllers/JointGroupEffortController": "forward:ForwardEffortGroupController",
-    "effort_controllers/JointPositionController": "joint_loops:EffortPositionLoop",
-    "effort_controllers/JointVelocityController": "joint_loops:EffortVelocityLoop",
-    "effort_controllers/JointGroupPositionController": "joint_loops:EffortPositionGroup",
-    "effort_controllers/JointTrajectoryController": "joint_trajectory:EffortTrajectory",
-    "effort_controllers/GripperActionController": "gripper_action:EffortGripper",
+    "position_controllers/JointPositionController": "forward:ForwardCommandController",
+    "position_controllers/JointGroupPositionController": "forward:ForwardGroupController",
+    "position_controllers/JointTrajectoryController": "joint_trajectory:JointTrajectory",
+    "position_controllers/ScaledJointTrajectoryController": "joint_trajectory:JointTrajectory",
+    "position_controllers/GripperActionController": "gripper_action:Gripper",
+    "velocity_controllers/JointVelocityController": "forward:ForwardCommandController",
+    "velocity_controllers/JointGroupVelocityController": "forward:ForwardGroupController",
+    "velocity_controllers/JointPositionController": "joint_loops:JointLoop",
+    "velocity_controllers/JointTrajectoryController": "joint_trajectory:JointTrajectory",
+    "velocity_controllers/ScaledJointTrajectoryController": "joint_trajectory:JointTrajectory",
+    "effort_controllers/JointEffortController": "forward:ForwardCommandController",
+    "effort_controllers/JointGroupEffortController": "forward:ForwardGroupController",
+    "effort_controllers/JointPositionController": "joint_loops:JointLoop",
+    "effort_controllers/JointVelocityController": "joint_loops:JointVelocityLoop",
+    "effort_controllers/JointGroupPositionController": "joint_loops:JointPositionGroup",
+    "effort_controllers/JointTrajectoryController": "joint_trajectory:JointTrajectory",
+    "effort_controllers/GripperActionController": "gripper_action:Gripper",
     "diff_drive_controller/DiffDriveController": "diff_drive_controller:DiffDriveController",
     "ackermann_steering_controller/AckermannSteeringController":
         "ackermann_steering_controller:AckermannSteeringController",
@@ -63,6 +63,10 @@ TYPES: Mapping[str, str] = {
 }
 """Classes in this package by type of controller."""
 
+_INTERFACES = {"position_controllers": POSITION, "velocity_controllers": VELOCITY,
+               "effort_controllers": EFFORT}
+"""The interface through which controllers of a package command their joints."""
+
 
 class ControllerManager:
     """The controllers of one robot.
@@ -71,15 +75,13 @@ class ControllerManager:
         context: of the plugin, with its namespace set.
         hardware: the joints.
         period: s between updates that the user has asked for; 0 for none.
-        extra: finds further classes by type, None for unknown ones.
         claimed: called when a controller has claimed joints and started.
     """
 
     def __init__(self, context: Context, hardware: Hardware, period: float = 0.0,
-                 extra: Callable[[str], Optional[Type[Controller]]] = lambda kind: None,
                  claimed: Callable[[], None] = lambda: None) -> None:
         self._context, self._hardware, self._period = context, hardware, period
-        self._extra, self._on_claim = extra, claimed
+        self._on_claim = claimed
         self._loaded: Dict[str, Controller] = {}
         self._types: Dict[str, str] = {}
         for name, kind, answer in (
@@ -112,6 +114,7 @@ class ControllerManager:
             raise PluginError(f"parameter {name}/type is missing: is the controller's configuration"
                               " on the parameter server, in the namespace of the robot?")
         made = self._class_of(kind)(name, self._context, self._hardware, self._period)
+        made.interface = _INTERFACES.get(kind.partition("/")[0], made.interface)
         try:
             made.load()
         except Exception:
@@ -183,11 +186,8 @@ class ControllerManager:
     def _class_of(self, kind: str) -> Type[Controller]:
         where = TYPES.get(kind)
         if where is None:
-            found = self._extra(kind)
-            if found is None:
-                raise PluginError(f"there is no controller of type {kind}; there are"
-                                  f" {', '.join(sorted(TYPES))}")
-            return found
+            raise PluginError(f"there is no controller of type {kind}; there are"
+                              f" {', '.join(sorted(TYPES))}")
         module, _, name = where.partition(":")
         made: Type[Controller] = getattr(importlib.import_module(f"{__package__}.{module}"), name)
         return made

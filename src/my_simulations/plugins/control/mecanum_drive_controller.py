@@ -27,9 +27,9 @@ class MecanumDriveController(BaseController):
 
     def load_wheels(self) -> None:
         s = self.settings
-        self._wheels = [self.claim_joint(VELOCITY, s.text(self.wheel_parameter(corner)))
+        self.counted = [self.claim_joint(VELOCITY, s.text(self.wheel_parameter(corner)))
                         for corner in _CORNERS]
-        joints = [self.context.joint(wheel.name).spec for wheel in self._wheels]
+        joints = [self.context.joint(wheel.name).spec for wheel in self.counted]
         if s.get("wheel_radius") is not None:
             self._radius = s.number("wheel_radius", 0.0)
         else:
@@ -67,19 +67,12 @@ class MecanumDriveController(BaseController):
         ox, oy, turn = self._offset
         c, s = math.cos(turn), math.sin(turn)
         x, y = c * x - s * y + oy * yaw, s * x + c * y - ox * yaw
-        for wheel, side, way in zip(self._wheels, (-1.0, -1.0, 1.0, 1.0), (-1.0, 1.0, -1.0, 1.0)):
+        for wheel, side, way in zip(self.counted, (-1.0, -1.0, 1.0, 1.0), (-1.0, 1.0, -1.0, 1.0)):
             wheel.command((x + way * y + side * self._arm * yaw) / self._radius)
-
-    def begin_count(self) -> None:
-        self._turned = self._positions()
-
-    def _positions(self) -> Tuple[float, ...]:
-        return tuple(wheel.position for wheel in self._wheels)
 
     def displacement(self, dt: float) -> Planar:
         """Return the motion of the base from the rotation of four wheels, by least squares."""
-        before, self._turned = self._turned, self._positions()
-        a, b, c, d = ((now - then) * self._radius / 4.0 for now, then in zip(self._turned, before))
+        a, b, c, d = (turn * self._radius / 4.0 for turn in self.count_rotations())
         x, y, yaw = a + b + c + d, -a + b - c + d, (-a - b + c + d) / self._arm
         ox, oy, turn = self._offset
         x, y = x - oy * yaw, y + ox * yaw

@@ -133,9 +133,7 @@ class OdometryController(Controller):
         self._wheels = read_wheels(self.context, s, steered=False)
         self._joints = [(self.hardware.state(wheel.steer), self.hardware.state(wheel.drive))
                         for wheel in self._wheels]
-        if s.get("publish_rate") is None:
-            raise PluginError(f"parameter {s.name}/publish_rate is missing")
-        self._publish_hz = s.number("publish_rate", 0.0)
+        self._publish_hz = s.number("publish_rate")
         if self._publish_hz <= 0.0:
             raise PluginError(f"parameter {s.name}/publish_rate must be positive")
         self._frames = (s.text("frame_id", "odom"), s.text("child_frame_id", "base_footprint"))

@@ -28,11 +28,6 @@ _HANDLES = 4  # messages in a topic's queue, as the original
 class _SensorController(Controller):
     """A topic for each sensor, in the robot's namespace."""
 
-    def _rate(self) -> float:
-        if self.settings.get("publish_rate") is None:
-            raise PluginError(f"parameter {self.name}/publish_rate is missing")
-        return self.settings.number("publish_rate", 0.0)
-
     def _named_sensors(self, kind: str, needed: str) -> Dict[str, Settings]:
         """Sensors that parameters name, as pal_hardware_gazebo reads them."""
         found = self.context.parameter(kind, {})
@@ -57,7 +52,7 @@ class ImuSensorController(_SensorController):
     """sensor_msgs/Imu of each `<sensor type="imu">`; the frame is that of its link."""
 
     def load(self) -> None:
-        self._hertz = self._rate()
+        self._hertz = self.settings.number("publish_rate")
         self._sensors: List[_ImuTopic] = []
         imus = {sensor.name: (link, sensor) for link, sensor in self.context.sensors()
                 if sensor.type == "imu"}
@@ -100,7 +95,7 @@ class ForceTorqueSensorController(_SensorController):
     """geometry_msgs/WrenchStamped of each force_torque sensor; the frame is that of the child."""
 
     def load(self) -> None:
-        self._hertz = self._rate()
+        self._hertz = self.settings.number("publish_rate")
         self._measurements: List[Callable[[], None]] = []
         self._topics: List[Publication] = []
         self._joints: List[str] = []

@@ -1,7 +1,7 @@
 """Parameters of a controller, by path: `constraints/goal_time`."""
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, List, Optional
+from typing import Any, Callable, Dict, List, Optional, Tuple, Union
 
 from ...engine.drive_commands import PidGains
 from ..context import Context, PluginError
@@ -32,54 +32,39 @@ class Settings:
             found = found[part]
         return found
 
-    def number(self, path: str, default: float) -> float:
+    def _read(self, path: str, default: Any, is_valid: Callable[[Any], bool], wanted: str) -> Any:
         value = self.get(path)
         if value is None:
+            if default is None:
+                raise PluginError(f"parameter {self.name}/{path} is missing")
             return default
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise self._wrong(path, value, "a number")
-        return float(value)
+        if not is_valid(value):
+            raise PluginError(f"parameter {self.name}/{path} must be {wanted}, it is {value!r}")
+        return value
+
+    def number(self, path: str, default: Optional[float] = None) -> float:
+        """Return a number; the parameter is required if there is no default."""
+        return float(self._read(path, default, lambda value: not isinstance(
+            value, bool) and isinstance(value, (int, float)), "a number"))
 
     def flag(self, path: str, default: bool) -> bool:
-        value = self.get(path)
-        if value is None:
-            return default
-        if not isinstance(value, (bool, int)):
-            raise self._wrong(path, value, "true or false")
-        return bool(value)
+        return bool(self._read(path, default, lambda value: isinstance(value, int),
+                               "true or false"))
 
     def text(self, path: str, default: Optional[str] = None) -> str:
         """Return a text; the parameter is required if there is no default."""
-        value = self.get(path)
-        if value is None:
-            if default is None:
-                raise PluginError(f"parameter {self.name}/{path} is missing")
-            return default
-        if not isinstance(value, str):
-            raise self._wrong(path, value, "a text")
-        return value
+        return str(self._read(path, default, lambda value: isinstance(value, str), "a text"))
 
     def texts(self, path: str, default: Optional[List[str]] = None) -> List[str]:
         """Return a list of texts, also for one text; required if there is no default."""
-        value = self.get(path)
-        if value is None:
-            if default is None:
-                raise PluginError(f"parameter {self.name}/{path} is missing")
-            return default
-        found = [value] if isinstance(value, str) else value
-        if not isinstance(found, list) or not found or not all(
-                isinstance(one, str) for one in found):
-            raise self._wrong(path, value, "a list of names")
-        return found
+        found = self._read(path, default, lambda value: isinstance(value, str) or (
+            bool(value) and _is_list_of(value, str)), "a list of names")
+        return [found] if isinstance(found, str) else list(found)
 
     def numbers(self, path: str, count: int, default: List[float]) -> List[float]:
-        value = self.get(path)
-        if value is None:
-            return default
-        if not isinstance(value, list) or len(value) != count or not all(
-                isinstance(one, (int, float)) for one in value):
-            raise self._wrong(path, value, f"a list of {count} numbers")
-        return [float(one) for one in value]
+        return list(map(float, self._read(
+            path, default, lambda value: _is_list_of(value, (int, float)) and len(value) == count,
+            f"a list of {count} numbers")))
 
     def gains(self, path: str) -> Optional[PidGains]:
         """Return PID gains; None if there is no p. Source: control_toolbox::Pid::init."""
@@ -99,8 +84,9 @@ class Settings:
             raise PluginError(f"no p gain is specified: parameter {self.name}/{path}/p is missing")
         return found
 
-    def _wrong(self, path: str, value: Any, wanted: str) -> PluginError:
-        return PluginError(f"parameter {self.name}/{path} must be {wanted}, it is {value!r}")
+
+def _is_list_of(value: Any, kind: Union[type, Tuple[type, ...]]) -> bool:
+    return isinstance(value, list) and all(isinstance(one, kind) for one in value)
 
 
 _OPTIONS = (

@@ -34,8 +34,8 @@ class UnitreeJointController(Controller):
     def start(self) -> None:
         """Brake until a command comes."""
         self._brake()
-        self.observe(min(self._hertz, 1.0 / self.period) if self.period else self._hertz,
-                     self._publish_state, [self._state], efforts=[self._joint.name])
+        self.observe(self.update_hz(self._hertz), self._publish_state, [self._state],
+                     efforts=[self._joint.name])
 
     def _receive(self, message: Any) -> None:
         """A command in another mode leaves the motor as it is."""
