@@ -10,7 +10,7 @@ from ...geometry import Pose, Twist, Vec3
 from ..checked_arguments import check_finite, check_number, check_pose, check_vector
 from ..parameters import Parameters
 from .connection import Connection
-from .messages import CONTEXT, METHODS, PROPERTIES, HandleMade, Start
+from .messages import CONTEXT, HANDLES, METHODS, PROPERTIES, HandleMade, Start
 
 
 class RemoteHandle:
@@ -119,11 +119,20 @@ class RemoteContext:
             return self._connection.query(name)
         if name in METHODS:
             return partial(self._connection.query, name)
+        if name in HANDLES:
+            return partial(self._handle, name)
         raise AttributeError(f"the context has no '{name}'")
 
     def _handle(self, name: str, *arguments: Any, **named: Any) -> Any:
+        """Return the handle of a method of the context; links and joints are looked up once."""
+        key = f"{name} {arguments} {named}" if HANDLES[name] in ("link", "joint") else ""
+        if key in self._found:
+            return self._found[key]
         made = self._connection.query(name, *arguments, **named)
-        return _KINDS[made.kind](self._connection, made)
+        handle = _KINDS[made.kind](self._connection, made)
+        if key:
+            self._found[key] = handle
+        return handle
 
     # -- time ------------------------------------------------------------------------------------
 
@@ -139,42 +148,12 @@ class RemoteContext:
     def step(self) -> int:
         return self._connection.readings.step
 
-    def every(self, hertz: float, call: Callable[[], None]) -> RemoteCallHandle:
-        return self._schedule_call("every", hertz, call)
-
     def observe(self, hertz: float, call: Callable[[], None], topics: Sequence[Any] = (),
                 **options: Any) -> RemoteCallHandle:
-        return self._schedule_call("observe", hertz, call, list(topics), **options)
-
-    def once(self, ns: int, call: Callable[[], None]) -> RemoteCallHandle:
-        return self._schedule_call("once", ns, call)
-
-    def on_world_change(self, call: Callable[[], None]) -> RemoteCallHandle:
-        return self._schedule_call("on_world_change", call)
-
-    def _schedule_call(self, name: str, *arguments: Any, **named: Any) -> RemoteCallHandle:
-        made: RemoteCallHandle = self._handle(name, *arguments, **named)
+        made: RemoteCallHandle = self._handle("observe", hertz, call, list(topics), **options)
         return made
 
     # -- the model -------------------------------------------------------------------------------
-
-    def link(self, name: str) -> RemoteLink:
-        found: RemoteLink = self._once_for_all("link", name)
-        return found
-
-    def joint(self, name: str) -> RemoteJoint:
-        found: RemoteJoint = self._once_for_all("joint", name)
-        return found
-
-    def _once_for_all(self, kind: str, name: str) -> Any:
-        key = f"{kind} {name}"
-        if key not in self._found:
-            self._found[key] = self._handle(kind, name)
-        return self._found[key]
-
-    def model_link(self, scoped: str) -> RemoteLink:
-        found: RemoteLink = self._once_for_all("model_link", scoped)
-        return found
 
     def set_planar_velocity(self, x: float, y: float, yaw_rate: float) -> None:
         self._call_handle("set_planar_velocity", check_finite(x, "x"), check_finite(y, "y"),
@@ -197,20 +176,13 @@ class RemoteContext:
             self._messages[kind] = pickle.dumps(self._connection.query("message", kind))
         return pickle.loads(self._messages[kind])
 
-    def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> RemoteTopic:
-        topic: RemoteTopic = self._handle("publish", name, kind, queue, latch)
-        return topic
-
-    def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
-                  queue: int = 1) -> RemoteCallHandle:
-        return self._schedule_call("subscribe", name, kind, call, queue)
-
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> RemoteCallHandle:
         def answer(request: Any, response: Any) -> Any:
             call(request, response)
             return response
 
-        return self._schedule_call("serve", name, kind, answer)
+        made: RemoteCallHandle = self._handle("serve", name, kind, answer)
+        return made
 
     def transform(self, parent: str, child: str, pose: Pose) -> None:
         self._call_handle("transform", str(parent), str(child), check_pose(pose, "a transform"))
