@@ -16,7 +16,7 @@ from my_simulations.formats.mesh.loading import collision_meshes
 from my_simulations.formats.reading import parse_document
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator.simulator import Simulator
-from my_simulations.simulator.spawn_advice import arrival_advice
+from my_simulations.simulator.spawn_advice import placement_warnings
 from my_simulations.simulator.world_loading import start_world
 
 SOURCE = str(pathlib.Path(my_simulations.__file__).parent) + "/"
@@ -74,7 +74,7 @@ def test_a_spawn_passes_the_stops_of_its_walk():
         assert issues == []
         meshes, _ = collision_meshes(model)
         simulator.models.spawn(model, meshes=meshes)
-        arrival_advice(simulator, "robot", meshes)
+        placement_warnings(simulator, "robot", meshes)
         simulator.close()
     assert left_out("A spawn, from ROS to PyBullet and back", calls) == []
 

@@ -277,7 +277,7 @@ class PluginHost:
 
     def _finish_changes(self, settings: int, _time_step: SimTimeStep) -> None:
         if settings != self._settings:
-            self._sync.finish_changes()
+            self._sync.await_model_changes()
         self._follow_models()
         if self._seen_revision != self._models.revision:
             self._seen_revision = self._models.revision

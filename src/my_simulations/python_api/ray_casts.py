@@ -48,7 +48,7 @@ def cast_rays(simulator: Simulator, scene: SceneSensing, origins: Any, direction
             and 0.0 < far < np.inf):
         raise CommandError("rays need finite origins, directions that are not zero, and a finite"
                            " range above 0")
-    row, offset = simulator.states.mounting(frame)
+    row, offset = simulator.states.frame_mount(frame)
     future = scene.cast(Mount(row, offset), RayBundle(starts, ways / lengths, far=float(far)),
                         visuals, simulator.clock.sim_ns, simulator.feed.rows())
     scene.send()

@@ -97,7 +97,7 @@ class Photographer:
             CommandError: no such frame, a camera that cannot be, or there is nothing to draw with.
         """
         check_camera(camera, outputs)
-        row, offset = self._simulator.states.mounting(frame)
+        row, offset = self._simulator.states.frame_mount(frame)
         mount = Mount(row, compose(offset, pose))
         ns = self._simulator.clock.sim_ns
         (future,) = self._scene.render([(mount, camera, tuple(outputs))], ns,

@@ -9,7 +9,7 @@ from ..engine.commands import Batch, DisconnectModels
 from ..errors import CommandError
 from ..geometry import compose, inverse
 from .entity import Entity
-from .model_links import ModelConnections
+from .model_connections import ModelConnections
 from .session import Session
 
 
@@ -21,7 +21,7 @@ class ConnectedModels:
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self._links = ModelConnections()
+        self._connections = ModelConnections()
 
     def names(self) -> List[str]:
         """Names of the top-level models, in load order."""
@@ -34,12 +34,12 @@ class ConnectedModels:
 
     @property
     def count(self) -> int:
-        """How many top-level models there are."""
+        """Number of top-level models."""
         with self._session.registry_lock:
             return len(self._session.registry)
 
     def with_plugins(self) -> Tuple[int, List[Entity]]:
-        """The revision and the models that have a plugin; no other is looked at."""
+        """The revision, and the models that have a plugin."""
         with self._session.registry_lock:
             return self._session.registry.revision, self._session.registry.with_plugins()
 
@@ -72,9 +72,9 @@ class ConnectedModels:
             return entity.model.links[index]
 
     def link_place(self, scoped: str) -> Optional[Tuple[int, Inertial]]:
-        """Row and inertial of a link by its scoped name; None where there is none."""
+        """Row and inertial of a link by its scoped name; None for an unknown name."""
         with self._session.registry_lock:
-            row = self._session.registry.link_row_or_none(scoped)
+            row = self._session.registry.scoped_link_row(scoped)
             if row is None:
                 return None
             entity, index = self._session.registry.link(scoped)
@@ -101,16 +101,16 @@ class ConnectedModels:
 
         Without those of `attach`, which belong to the caller that made them.
         """
-        return self._links.permanent_joints.joints
+        return self._connections.permanent_joints.joints
 
     @property
-    def links(self) -> ModelConnections:
+    def connections(self) -> ModelConnections:
         """Joints between models and pins, as they are now."""
-        return self._links
+        return self._connections
 
-    def adopt_connections(self, links: ModelConnections) -> None:
-        """Keep other joints and pins, which the engine has now."""
-        self._links = links
+    def store_connections(self, connections: ModelConnections) -> None:
+        """Store joints and pins that the engine has already."""
+        self._connections = connections
 
     def pin(self, names: List[str]) -> None:
         """Pin these models, which then stay at rest where they are set, and release all others.
@@ -121,7 +121,7 @@ class ConnectedModels:
             with self._session.registry_lock:
                 for name in names:
                     self._session.registry.model(name)
-            self._set_pins(replace(self._links, pinned=tuple(names)))
+            self._apply_pins(replace(self._connections, pinned=tuple(names)))
 
     def hold(self, name: str, held: bool) -> None:
         """Keep one model at rest where it is put, or release it; besides those that are pinned.
@@ -131,20 +131,20 @@ class ConnectedModels:
         with self._session.structure_lock:
             with self._session.registry_lock:
                 self._session.registry.model(name)
-            others = tuple(one for one in self._links.held if one != name)
-            self._set_pins(replace(self._links, held=(*others, name) if held else others))
+            others = tuple(one for one in self._connections.held if one != name)
+            self._apply_pins(replace(self._connections, held=(*others, name) if held else others))
 
-    def _set_pins(self, links: ModelConnections) -> None:
+    def _apply_pins(self, connections: ModelConnections) -> None:
         with self._session.registry_lock:
-            command = links.pin_command(self._session.registry)
+            command = connections.pin_command(self._session.registry)
         self._session.call(command)
-        self._links = links
+        self._connections = connections
 
     def attach(self, name: str, parent: str, child: str) -> None:
         """Join a link to another one, or to the world, as they are now.
 
-        The joint is fixed, and replaces another between models with the same name. It goes with
-        either model, and with a reset of the world to how it began.
+        The joint is fixed, and replaces another between models with the same name. It is removed
+        with either model, and by a reset of the world.
 
         Args:
             name: of the joint.
@@ -163,20 +163,20 @@ class ConnectedModels:
                 at = snapshot.link(session.link_row(child))[0]
                 if parent != WORLD:
                     at = compose(inverse(snapshot.link(session.link_row(parent))[0]), at)
-                wanted = self._links.between.with_joint(
+                wanted = self._connections.joints.with_joint(
                     session.registry, Joint(name, "fixed", parent, child), at)
                 (command,) = wanted.with_name(name).commands(session.registry)
             session.call(Batch((DisconnectModels((name,)), command)))
-            self._links = self._links.with_joint(wanted, name)
+            self._connections = self._connections.with_joint(wanted, name)
 
     def attachments(self, name: str) -> List[Joint]:
-        return self._links.joint(name)
+        return self._connections.joint(name)
 
     def detach(self, name: str) -> bool:
-        """Take away a joint between models; returns whether there was one of that name."""
+        """Remove a joint between models; return whether it existed."""
         with self._session.structure_lock:
-            if not self._links.joint(name):
+            if not self._connections.joint(name):
                 return False
             self._session.call(DisconnectModels((name,)))
-            self._links = self._links.without_joint(name)
+            self._connections = self._connections.without_joint(name)
             return True

@@ -73,8 +73,8 @@ class Drives:
             servos: Sequence[JointServo] = (), at_once: bool = True) -> bool:
         """Set motors and servos by joint row, planar velocities by model id; others stay.
 
-        Motors alone are not waited for: the engine has them before all that is called afterwards,
-        and before it makes steps that a plugin host allows afterwards.
+        A command with motors only is posted: the engine applies it before later commands, and
+        before steps that a plugin host allows later.
 
         Args:
             motors: joint motors by row; rate in rad/s or m/s, maximum effort in N m or N.
@@ -117,8 +117,7 @@ class Drives:
                           servos: Sequence[JointServo]) -> List[JointServo]:
         """Servos, and the ends of those that hold axes which motors drive.
 
-        A motor also goes on if a servo begins that only stops its axis, as joints of ros_control do
-        that no controller uses.
+        A motor continues if a new servo only stops its axis, as those of unused ros_control joints.
         """
         if not motors and not any(servo.holds or _only_stops(servo) for servo in servos):
             return list(servos)
@@ -208,7 +207,7 @@ class Drives:
                              tuple(self._servos.values()), tuple(self._slips.values()))
 
     def replace_all(self, settings: DriveSettings) -> None:
-        """Keep other drives, which the engine has now."""
+        """Store drives that the engine has already."""
         self._motors = {motor.row: motor for motor in settings.motors}
         self._planar = {one.model_id: one for one in settings.planar}
         self._servos = {servo.row: servo for servo in settings.servos}
@@ -258,7 +257,7 @@ class Drives:
             commands.append(SetWheelSlips(tuple(wheels)))
         return commands
 
-    def adopt(self, commands: Sequence[Command]) -> None:
+    def store_transferred(self, commands: Sequence[Command]) -> None:
         """Record the drives that `transfer_to_successor` moved, after the engine has moved them."""
         for command in commands:
             if isinstance(command, SetMotors):

@@ -13,7 +13,7 @@ from ..geometry import Vec3
 from .clock import SimClock
 from .drives import Drives, DriveSettings
 from .entity import Entity
-from .model_links import ModelConnections
+from .model_connections import ModelConnections
 from .models import Models, load_command
 from .physics import WorldPhysics
 from .registry import Registry
@@ -31,7 +31,7 @@ class ExactState:
         physics, gravity: the settings; m/s^2, world axes.
         entities: copies of all models, in order.
         states: of the links and joints of each model.
-        links: joints between models, and pins.
+        connections: joints between models, and pins.
         drives: motors, servos, planar velocities and wheel slips.
         forces: timed wrenches and efforts that act, or will.
         run: what the engine has learned from earlier steps.
@@ -43,7 +43,7 @@ class ExactState:
     gravity: Vec3
     entities: Tuple[Entity, ...]
     states: Tuple[ModelState, ...]
-    links: ModelConnections
+    connections: ModelConnections
     drives: DriveSettings
     forces: Tuple[TimedForce, ...]
     run: RunState
@@ -77,7 +77,7 @@ class ExactStates:
             state = ExactState(
                 step, clock.sim_ns(step), self._physics.settings, self._physics.gravity,
                 tuple(map(copy, entities)), tuple(entity.saved(snapshot) for entity in entities),
-                self._models.links, self._drives.settings, self._wrenches.pending(step), run)
+                self._models.connections, self._drives.settings, self._wrenches.pending(step), run)
             self.restore(state)
             return state
 
@@ -95,10 +95,10 @@ class ExactStates:
             entities = list(map(copy, state.entities))
             session.call(Batch((
                 Pause(), *self._load_commands(state), SetClock(state.step, state.sim_ns),
-                *state.links.commands(_registry_of(entities)), *state.drives.commands(),
+                *state.connections.commands(_registry_of(entities)), *state.drives.commands(),
                 AddTimedForces(state.forces), SetRunState(state.run),
                 *self._clock.resume_commands())))
-            self._adopt(state, entities)
+            self._store(state, entities)
 
     def _load_commands(self, state: ExactState) -> List[Command]:
         """Commands that load the models; most often the engine has them all, which is faster."""
@@ -112,18 +112,18 @@ class ExactStates:
         return [*settings, Clear(), *(load_command(entity, one)
                            for entity, one in zip(state.entities, state.states))]
 
-    def _adopt(self, state: ExactState, entities: Sequence[Entity]) -> None:
-        """Keep what the engine has now."""
+    def _store(self, state: ExactState, entities: Sequence[Entity]) -> None:
+        """Store the state that the engine has now."""
         session = self._session
         with session.registry_lock:
             if _differ(session.registry.entities(), entities):
                 session.replace_entities(entities)
             session.reserve_ids([entity.model_id for entity in entities]
                                 + [force.force_id for force in state.forces])
-        self._models.adopt_connections(state.links)
+        self._models.store_connections(state.connections)
         self._drives.replace_all(state.drives)
         self._wrenches.replace_all(state.forces)
-        self._physics.adopt(state.physics, state.gravity)
+        self._physics.store(state.physics, state.gravity)
 
 
 def _registry_of(entities: Sequence[Entity]) -> Registry:

@@ -123,8 +123,8 @@ class History:
         """Redo the step undone last, or all up to the `to`-th. Raises CommandError."""
         return self._move(self._undone, self._done, to, "redo")
 
-    def saved(self) -> None:
-        """Note that the current state was saved to a file."""
+    def mark_saved(self) -> None:
+        """Record that the current state was saved to a file."""
         with self._lock:
             self._saved = self._top
 

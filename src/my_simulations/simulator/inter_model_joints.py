@@ -36,17 +36,17 @@ class InterModelJoints:
         """The joints that are located, in order."""
         return [one.joint for one in self._all]
 
-    def slides(self, model: str) -> bool:
+    def has_prismatic_joint(self, model: str) -> bool:
         """Whether a prismatic joint connects a link of that model."""
-        return any(one.joint.type == "prismatic" and _touches(one.joint, model)
+        return any(one.joint.type == "prismatic" and _connects(one.joint, model)
                    for one in self._all)
 
     def without_model(self, model: str) -> "InterModelJoints":
-        return self._make([one for one in self._all if not _touches(one.joint, model)])
+        return self._make([one for one in self._all if not _connects(one.joint, model)])
 
     def of_model(self, model: str) -> "InterModelJoints":
         """The joints that connect a model, which are deleted with it."""
-        return self._make([one for one in self._all if _touches(one.joint, model)])
+        return self._make([one for one in self._all if _connects(one.joint, model)])
 
     def with_joints(self, others: "InterModelJoints") -> "InterModelJoints":
         return self._make(self._all + others._all)
@@ -103,7 +103,7 @@ class InterModelJoints:
         made = []
         for one in self._all:
             joint = one.joint
-            if model and not _touches(joint, model):
+            if model and not _connects(joint, model):
                 continue
             parent, child = (_row(registry, name, model, instead)
                              for name in (joint.parent, joint.child))
@@ -132,7 +132,7 @@ class DeletedModel:
     articulated: bool = False
 
 
-def _touches(joint: Joint, model: str) -> bool:
+def _connects(joint: Joint, model: str) -> bool:
     return any(end.startswith(model + "::") for end in (joint.parent, joint.child))
 
 

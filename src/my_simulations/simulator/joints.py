@@ -78,7 +78,7 @@ class Joints:
         def look_up() -> Command:
             found = [session.registry.movable_joint(name) for name in positions]
             return SetJoints(tuple(
-                (row, _within_limits(entity, row, value), (rates or {}).get(name, 0.0))
+                (row, _clamp_to_limits(entity, row, value), (rates or {}).get(name, 0.0))
                 for (entity, row), (name, value) in zip(found, positions.items())),
                              tuple(sorted({entity.model_id for entity, _ in found})))
 
@@ -105,8 +105,8 @@ class Joints:
                 session.registry.swap(entity, changed)
 
 
-def _within_limits(entity: Entity, row: int, position: float) -> float:
-    """The allowed position of an axis that is nearest; a number that is not finite stays."""
+def _clamp_to_limits(entity: Entity, row: int, position: float) -> float:
+    """Return the allowed position of an axis that is nearest; NaN and infinity stay."""
     found = axis_rows(entity.model)[row - entity.first_joint_row]
     axis = found.joint.axis2 if found.number else found.joint.axis
     if axis is None or found.joint.type == "continuous" or axis.lower > axis.upper or (

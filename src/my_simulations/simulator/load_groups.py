@@ -17,9 +17,9 @@ _MOST_MODELS, _MOST_LINKS, _MOST_SHAPES = 100, 300, 2000
 
 
 def small_groups(models: Sequence[Model]) -> Iterator[List[Model]]:
-    """The models in their order; those that may be refused, or that have meshes, are alone.
+    """Yield the models in order; those with meshes, or that the engine may refuse, are alone.
 
-    A command of which a part is refused costs another engine.
+    If the engine refuses a part of a command, it has to be restarted.
     """
     group: List[Model] = []
     names = set()

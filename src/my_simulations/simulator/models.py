@@ -29,7 +29,7 @@ from .drives import Drives
 from .entity import Entity
 from .inter_model_joints import DeletedModel, InterModelJoints
 from .load_groups import prepare_shapes, small_groups
-from .model_links import ModelConnections
+from .model_connections import ModelConnections
 from .order_slot import OrderSlot
 from .registry import NameTakenError
 from .session import Session, check_name
@@ -103,11 +103,11 @@ class Models(ConnectedModels):
         with session.structure_lock:
             session.await_posted()
             again = InterModelJoints() if deleted is None else deleted.joints
-            between = self._links.between.with_joints(again)
+            joints = self._connections.joints.with_joints(again)
             with session.registry_lock:
                 old = self._replaceable(model.name, replace)
                 # A joint to a model that is restored later may need it articulated.
-                articulated = between.slides(model.name) or (deleted is not None
+                articulated = joints.has_prismatic_joint(model.name) or (deleted is not None
                                                              and deleted.articulated)
                 entity = session.new_entity(model, self._world_pose(model, pose, frame), meshes,
                                             articulated)
@@ -120,16 +120,16 @@ class Models(ConnectedModels):
                     *initial_commands(entity, entity.start if state is None else None),
                     *again.commands(session.registry, model.name, entity),
                     *([] if old is None else [RemoveModel(old.model_id)]),
-                    *self._links.pins_with(model.name, entity, session.registry))))
+                    *self._connections.pins_with(model.name, entity, session.registry))))
             except CommandError:
                 self._forget(entity)
                 raise
             with session.registry_lock:
                 session.registry.add(entity, None if deleted is None else deleted.slot)
                 if deleted is not None:
-                    self._set_joints(between.with_existing_links(session.registry))
+                    self._set_joints(joints.with_existing_links(session.registry))
                 if old is not None:
-                    self._set_joints(self._links.between.without_model(model.name))
+                    self._set_joints(self._connections.joints.without_model(model.name))
                     self._forget(old)
 
     def spawn_all(self, models: Sequence[NewModel]) -> None:
@@ -173,7 +173,7 @@ class Models(ConnectedModels):
                 raise NameTakenError(f"a model named '{model.name}' already exists")
             entity = session.new_entity(
                 model, self._world_pose(model, new.pose, ""), parts,
-                self._links.between.slides(model.name)
+                self._connections.joints.has_prismatic_joint(model.name)
                 or (deleted is not None and deleted.articulated))
         entity.launched = deleted is not None and deleted.launched
         entity.start = deleted.start if deleted else self._saved_starts.get(model.name)
@@ -201,10 +201,10 @@ class Models(ConnectedModels):
         """Remove an entity, which the engine no longer has, from the registry."""
         registry, name = self._session.registry, entity.model.name
         deleted = DeletedModel(OrderSlot.of(registry.names(), name),
-                               self._links.permanent_joints.of_model(name),
+                               self._connections.permanent_joints.of_model(name),
                                entity.launched, entity.start, entity.articulated)
         registry.remove(name)
-        self._links = self._links.without_model(name)
+        self._connections = self._connections.without_model(name)
         self._forget(entity)
         return deleted
 
@@ -224,7 +224,7 @@ class Models(ConnectedModels):
         return compose(anchor.newest(self._session.ring)[0], wanted)
 
     def _set_joints(self, joints: InterModelJoints) -> None:
-        self._links = replaced(self._links, between=joints)
+        self._connections = replaced(self._connections, joints=joints)
 
     def _forget(self, entity: Entity) -> None:
         """Release the rows, drives and wrenches of an entity that is not in the engine."""
@@ -267,7 +267,7 @@ class Models(ConnectedModels):
             parts = self._convex_meshes.of(model, {**old.meshes, **(meshes or {})})
             with session.registry_lock:
                 entity = session.new_entity(model, old.initial_pose, parts,
-                                            self._links.between.slides(model.name))
+                                            self._connections.joints.has_prismatic_joint(model.name))
             entity.pose, entity.articulated = old.pose, old.articulated
             entity.launched, entity.start = old.launched, old.start
             forces = self._wrenches.transfer_to_successor(old, entity)
@@ -276,19 +276,19 @@ class Models(ConnectedModels):
                 session.call(Batch((
                     replaced(load_command(entity), inherit=old.model_id),
                     RemoveModel(old.model_id),
-                    *self._links.between.commands(session.registry, name, entity),
+                    *self._connections.joints.commands(session.registry, name, entity),
                     *([AddTimedForces(tuple(forces))] if forces else []), *driving,
-                    *self._links.pins_with(name, entity, session.registry))))
+                    *self._connections.pins_with(name, entity, session.registry))))
             except CommandError:
                 self._forget(entity)
                 raise
             with session.registry_lock:
                 session.registry.swap(old, entity)
-                self._links = self._links.with_model_renamed(name, model.name,
+                self._connections = self._connections.with_model_renamed(name, model.name,
                                                              session.registry)
                 self._forget(old)
-            self._wrenches.keep(forces)
-            self._drives.adopt(driving)
+            self._wrenches.store(forces)
+            self._drives.store_transferred(driving)
 
     def set_link_inertial(self, link: str, inertial: Inertial,
                           gravity: Optional[bool] = None) -> None:
@@ -357,14 +357,14 @@ class Models(ConnectedModels):
             if len(group) == 1 or not self._load_together(group, meshes):
                 for model in group:
                     self._load_or_skip(model, meshes.get(model.name))
-        located, issues = self._links.between.locate(session.registry)
+        located, issues = self._connections.joints.locate(session.registry)
         for issue in issues:
             session.log(replaced(issue, file=session.world.file))
         self._set_joints(InterModelJoints())  # a restarted engine gets those that were made
         for command in located.commands(session.registry):
             try:
                 session.call(command)
-                self._set_joints(self._links.between.with_joints(
+                self._set_joints(self._connections.joints.with_joints(
                     located.with_name(command.joint.name)))
             except CommandError as fault:
                 session.log(error("joint-refused", str(fault), file=session.world.file))
@@ -403,13 +403,13 @@ class Models(ConnectedModels):
             for entity in session.registry.entities():
                 session.registry.remove(entity.model.name)
                 self._forget(entity)
-        self._links = ModelConnections(self._links.between)
+        self._connections = ModelConnections(self._connections.joints)
 
     def restore_commands(self, snapshot: Snapshot) -> List[Command]:
         """Commands that load every model into a new engine, in the states of a snapshot."""
         entities = self._session.registry.entities()
         return [*(load_command(entity, entity.saved(snapshot)) for entity in entities),
-                *self._links.commands(self._session.registry)]
+                *self._connections.commands(self._session.registry)]
 
 
 def load_command(entity: Entity, state: Optional[ModelState] = None) -> LoadModel:

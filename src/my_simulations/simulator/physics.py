@@ -49,7 +49,7 @@ class WorldPhysics:
                 self._session.registry.revision += 1
 
     def _change_step(self, command: SetPhysics, share: float) -> None:
-        """Carry it out; each step becomes `share` steps for what is to begin or end in them."""
+        """Send the command; scale the pending times of forces by `share` new steps per old step."""
         now = self._session.call(Pause()).step
         forces = [replace(force, start=now + max(0, round((force.start - now) * share)),
                           stop=force.stop if force.stop == FOREVER
@@ -63,12 +63,12 @@ class WorldPhysics:
 
     # -- for the other parts -----------------------------------------------------------------------
 
-    def adopt_world(self) -> None:
-        """Take over the settings of a world that has just been read."""
+    def store_world(self) -> None:
+        """Store the settings of the session's world, which the engine has already."""
         self._settings, self._gravity = self._session.world.physics, self._session.world.gravity
 
-    def adopt(self, settings: Physics, gravity: Vec3) -> None:
-        """Keep settings that the engine has now."""
+    def store(self, settings: Physics, gravity: Vec3) -> None:
+        """Store settings that the engine has already."""
         self._settings, self._gravity = settings, gravity
 
     def command(self, settings: Optional[Physics] = None,

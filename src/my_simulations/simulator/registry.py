@@ -103,7 +103,7 @@ class Registry:
         return len(self._entities)
 
     def with_plugins(self) -> List[Entity]:
-        """The models that have a plugin, in the order in which they came or were edited."""
+        """The models that have a plugin, in the order in which they were added or edited."""
         return list(self._with_plugins.values())
 
     def names(self) -> List[str]:
@@ -141,7 +141,7 @@ class Registry:
         self._entities = {(new if entity is old else entity).model.name:
                           new if entity is old else entity
                           for entity in self._entities.values()}
-        self._forget_parts(old)
+        self._unindex_parts(old)
         self._index_parts(new)
         self._sort_links([new])
         self.revision += 1
@@ -153,7 +153,7 @@ class Registry:
         if entity.has_plugins:
             self._with_plugins[entity.model_id] = entity
 
-    def _forget_parts(self, entity: Entity) -> None:
+    def _unindex_parts(self, entity: Entity) -> None:
         self._joints.clear()
         for link in entity.link_names:
             del self._plain_links[link][entity.model_id]
@@ -176,7 +176,7 @@ class Registry:
 
     def remove(self, name: str) -> Entity:
         entity = self._entities.pop(name)
-        self._forget_parts(entity)
+        self._unindex_parts(entity)
         self.revision += 1
         return entity
 
@@ -184,7 +184,7 @@ class Registry:
         """The entity of a model name. Raises UnknownEntityError."""
         found = self._entities.get(name)
         if found is None:
-            raise UnknownEntityError(f"unknown model '{name}'" + self._nearest(name))
+            raise UnknownEntityError(f"unknown model '{name}'" + self._suggest_models(name))
         return found
 
     def link(self, name: str) -> Tuple[Entity, int]:
@@ -194,10 +194,10 @@ class Registry:
         """
         found = self._scoped_link(name) or self._plain_link(name)
         if found is None:
-            raise UnknownEntityError(f"unknown link '{name}'" + self._nearest_link(name))
+            raise UnknownEntityError(f"unknown link '{name}'" + self._suggest_links(name))
         return found
 
-    def link_row_or_none(self, name: str) -> Optional[int]:
+    def scoped_link_row(self, name: str) -> Optional[int]:
         """The row of a link by its scoped name; None for an unknown name."""
         found = self._scoped_link(name)
         return None if found is None else found[0].first_link_row + found[1]
@@ -211,9 +211,9 @@ class Registry:
         for entity, joint, number in self._joints_named(name):
             row = entity.axis_row(joint.name, number)
             if row is not None:
-                self._joint_taken(name, entity)
+                self._warn_if_ambiguous_joint(name, entity)
                 return entity, row
-        raise UnknownEntityError(f"unknown movable joint '{name}'" + self._nearest_joint(name))
+        raise UnknownEntityError(f"unknown movable joint '{name}'" + self._suggest_joints(name))
 
     def joint(self, name: str) -> Tuple[Entity, Joint, int]:
         """Model, joint and axis number of a joint by plain or scoped name, fixed ones too.
@@ -223,8 +223,8 @@ class Registry:
         if name not in self._joints:
             found = next(self._joints_named(name), None)
             if found is None:
-                raise UnknownEntityError(f"unknown joint '{name}'" + self._nearest_joint(name))
-            self._joint_taken(name, found[0])
+                raise UnknownEntityError(f"unknown joint '{name}'" + self._suggest_joints(name))
+            self._warn_if_ambiguous_joint(name, found[0])
             self._joints[name] = found
         return self._joints[name]
 
@@ -259,7 +259,7 @@ class Registry:
                 return ReferenceFrame(-1, light.pose)
         if name in WORLD_FRAMES:
             return None
-        raise UnknownFrameError(f"unknown reference frame '{name}'" + self._nearest(name))
+        raise UnknownFrameError(f"unknown reference frame '{name}'" + self._suggest_models(name))
 
     def _scoped_link(self, name: str) -> Optional[Tuple[Entity, int]]:
         model, link = split_scoped(name, self._entities.__contains__)
@@ -276,9 +276,9 @@ class Registry:
             self._warn_ambiguous("link", name, [entity.model.name for entity, _ in found.values()])
         return next(iter(found.values()))
 
-    def _joint_taken(self, name: str, taken: Entity) -> None:
+    def _warn_if_ambiguous_joint(self, name: str, used: Entity) -> None:
         """Log once if the plain name of a joint exists in several models."""
-        if ("joint", name) in self._warned or name.startswith(taken.model.name + "::"):
+        if ("joint", name) in self._warned or name.startswith(used.model.name + "::"):
             return
         self._warn_ambiguous("joint", name, [
             entity.model.name for entity in self._entities.values()
@@ -306,10 +306,10 @@ class Registry:
                 return ReferenceFrame(entity.first_link_row + index, collision.pose)
         return None
 
-    def _nearest(self, name: str) -> str:
-        return _closest_name(name, self._entities)
+    def _suggest_models(self, name: str) -> str:
+        return _suggest_names(name, self._entities)
 
-    def _nearest_link(self, name: str) -> str:
+    def _suggest_links(self, name: str) -> str:
         """Suggestions for an unknown link: those of a model of that name, else similar names."""
         of_model = self._entities.get(name)
         if of_model is not None:
@@ -317,25 +317,25 @@ class Registry:
             return (f"; it is a model, its {'link is' if len(named) == 1 else 'links are'} "
                     + ", ".join(named[:_FEW]) + (", ..." if len(named) > _FEW else "")
                     if named else "; it is a model without links")
-        return _scoped_meant(name, {entity.model.name: entity.link_names
+        return _suggest_scoped(name, {entity.model.name: entity.link_names
                                     for entity in self._entities.values()})
 
-    def _nearest_joint(self, name: str) -> str:
-        return _scoped_meant(name, {
+    def _suggest_joints(self, name: str) -> str:
+        return _suggest_scoped(name, {
             entity.model.name: [joint.name for joint in entity.model.joints]
             for entity in self._entities.values()})
 
 
-def _closest_name(name: str, known: Iterable[str]) -> str:
+def _suggest_names(name: str, known: Iterable[str]) -> str:
     near = difflib.get_close_matches(name, list(known), n=_FEW)
     return f"; did you mean {' or '.join(near)}?" if near else ""
 
 
-def _scoped_meant(name: str, owned: Mapping[str, Sequence[str]]) -> str:
+def _suggest_scoped(name: str, owned: Mapping[str, Sequence[str]]) -> str:
     """Scoped names (`model::part`) similar to an unknown one."""
     model, _, part = name.partition("::")
     if part and model not in owned:
-        return _closest_name(name,
+        return _suggest_names(name,
                              [f"{owner}::{one}" for owner, names in owned.items() for one in names])
     scopes = [model] if part else list(owned)
     plain = {one: f"{owner}::{one}" for owner in reversed(scopes) for one in owned[owner]}

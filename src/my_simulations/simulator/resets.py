@@ -53,10 +53,10 @@ class Resets:
         session = self._session
         with session.structure_lock:
             entities = session.registry.entities()
-            session.call(Batch((*self._models.links.detach_commands(), *(
+            session.call(Batch((*self._models.connections.detach_commands(), *(
                 SetModelState(entity.model_id, entity.initial_pose, STILL)
                 for entity in entities if entity.link_names), Synchronize())))
-            self._models.adopt_connections(self._models.links.detached())
+            self._models.store_connections(self._models.connections.detached())
             self._move_linkless_models(entities)
             self.world_resets += 1
 
@@ -75,12 +75,12 @@ class Resets:
             clock = SetClock(0, 0) if not to_start else self._clock.start_command(
                 session.world.initial_ns, self._clock.now()[1].step_ps * 1e-12)
             commands: List[Command] = [
-                *self._models.links.detach_commands(),
+                *self._models.connections.detach_commands(),
                 Restart(tuple((entity.model_id, entity.initial_pose) for entity in entities)),
                 clock]
             for entity in entities:
                 commands += initial_commands(entity, entity.start)
-            commands += self._models.links.detached().commands(session.registry)
+            commands += self._models.connections.detached().commands(session.registry)
             self.simulation_resets += 1
             restarts = session.supervisor.restarts
             try:
@@ -88,7 +88,7 @@ class Resets:
             except CommandError:
                 self.simulation_resets -= 1
                 raise
-            self._models.adopt_connections(self._models.links.detached())
+            self._models.store_connections(self._models.connections.detached())
             self._move_linkless_models(entities)
             dropped = self._wrenches.ids
             self._wrenches.replace_all()

@@ -31,7 +31,7 @@ def write_atomically(path: str, data: bytes, overwrite: bool, private: bool = Fa
             stream.flush()
             os.fchmod(stream.fileno(), 0o600 if private else _mode(path))
             os.fsync(stream.fileno())
-        _put(temporary, path, overwrite)
+        _move_into_place(temporary, path, overwrite)
         _sync_folder(folder)
     except FileExistsError as fault:
         if not os.path.isdir(folder):
@@ -45,7 +45,7 @@ def write_atomically(path: str, data: bytes, overwrite: bool, private: bool = Fa
             os.unlink(temporary)
 
 
-def _put(temporary: str, path: str, overwrite: bool) -> None:
+def _move_into_place(temporary: str, path: str, overwrite: bool) -> None:
     if os.path.isdir(path):
         raise IsADirectoryError(errno.EISDIR, "it is a folder", path)
     if overwrite:

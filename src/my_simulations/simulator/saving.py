@@ -50,7 +50,7 @@ def present_world(simulator: Simulator, *, state: bool = True, launched: bool = 
     if not launched:
         entities = [entity for entity in entities if not entity.launched]
     world = simulator.world
-    models = [replace(unflatten_model(entity.model), pose=_frame(entity, snapshot))
+    models = [replace(unflatten_model(entity.model), pose=_written_pose(entity, snapshot))
               for entity in entities]
     saved = (_state if state else _configuration)(world, entities, snapshot)
     return replace(
@@ -59,11 +59,11 @@ def present_world(simulator: Simulator, *, state: bool = True, launched: bool = 
         gravity=simulator.physics.gravity, state=saved, initial={}, initial_ns=0)
 
 
-def _frame(entity: Entity, snapshot: Snapshot) -> Pose:
-    """The pose to write into a model: of one that hangs on the world that of its anchors.
+def _written_pose(entity: Entity, snapshot: Snapshot) -> Pose:
+    """Return the pose to write into a model.
 
-    Where its links are, its `<state>` says: in a model whose frame has turned with its door, the
-    hinge would have turned too.
+    If joints connect the model to the world, its anchors give the pose: the model frame may have
+    moved with a link, such as a door, but the hinge has not. `<state>` contains the link poses.
     """
     saved = entity.saved(snapshot)
     positions = {row.joint.name: position for row, (position, _) in zip(
@@ -74,9 +74,9 @@ def _frame(entity: Entity, snapshot: Snapshot) -> Pose:
 
 
 def _joints_of(simulator: Simulator, entities: Sequence[Entity]) -> List[Joint]:
-    there = {entity.model.name for entity in entities}
+    present = {entity.model.name for entity in entities}
     return [joint for joint in simulator.models.inter_model_joints
-            if all("::" not in end or end.split("::")[0] in there
+            if all("::" not in end or end.split("::")[0] in present
                    for end in (joint.parent, joint.child))]
 
 

@@ -1,4 +1,4 @@
-"""Rays and pictures of the world: the sensing processes, told of what there is."""
+"""Rays and pictures of the world; keeps the scenes of the sensing processes up to date."""
 from __future__ import annotations
 
 from concurrent.futures import Future
@@ -41,8 +41,8 @@ class SceneSensing:
     process starts with the first request.
 
     Args:
-        simulator: the world that is looked at.
-        log: hears of what is left out, and of deaths of the processes.
+        simulator: the world.
+        log: receives issues about missing files and crashes of the processes.
     """
 
     def __init__(self, simulator: Simulator, log: Callable[[Issue], None]) -> None:
@@ -59,14 +59,14 @@ class SceneSensing:
 
     def cast(self, mount: Mount, fan: Union[RayFan, RayBundle], visuals: bool, ns: int,
              rows: bytes) -> "Future[RayReturns]":
-        """Ranges, once `send` is called.
+        """Return the future ranges; `send` sends the request.
 
-        What several sensors ask for in one moment travels as one request.
+        Casts of the same step are sent as one request.
 
         Args:
             mount: where the sensor is.
             fan: its rays.
-            visuals: they see what is drawn, else what collides.
+            visuals: rays hit visuals, else collisions.
             ns: sim time of the rows.
             rows: of all links, as in the ring.
         """
@@ -82,7 +82,7 @@ class SceneSensing:
         return future
 
     def send(self) -> None:
-        """Send what `cast` has gathered."""
+        """Send the casts that were requested."""
         if not self._casts:
             return
         casts, self._casts = self._casts, []

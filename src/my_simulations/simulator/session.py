@@ -25,7 +25,7 @@ from .supervisor import Supervisor
 _POST_S = 0.002
 """How long a command that can be posted waits for another one, or for a change of models."""
 _CHANGE_S = 1.0
-"""How long a change of models is waited for before something that it concerns is refused."""
+"""How long a command waits for a change of models before it is refused."""
 
 
 class Session:
@@ -44,7 +44,7 @@ class Session:
         registry: the entities in the world. Read and changed with `registry_lock` held.
         log: receives issues that no caller waits for.
         before_advance: called before an advance; see `SyncPoints.attach`.
-        before_plugins: called before a model with plugins comes; see `SyncPoints.on_plugins`.
+        before_plugins: called before a model with plugins is added; see `SyncPoints.on_plugins`.
     """
 
     def __init__(self, world: World, supervisor: Supervisor, log: Callable[[Issue], None]) -> None:
@@ -67,7 +67,7 @@ class Session:
         return self.supervisor.call(command)
 
     def await_posted(self) -> None:
-        """Wait until snapshots show the effect of all changes that callers were told are done.
+        """Wait until snapshots show the effect of all posted commands.
 
         Call it before reading states, without the registry lock. Raises CommandError.
         """
@@ -93,8 +93,8 @@ class Session:
     def move(self, look_up: Callable[[], Command]) -> None:
         """Call what `look_up` makes of the registry, which is locked meanwhile.
 
-        Where a model has gone in between, it is looked up again: it may have been replaced by an
-        edit, and keeps its name then. Raises CommandError, and what `look_up` raises.
+        If a model was removed in between, it is looked up again by its name, because an edit
+        replaces the entity of a model. Raises CommandError, and what `look_up` raises.
         """
         with self.registry_lock:
             command = look_up()
@@ -183,7 +183,7 @@ class Session:
         self.registry.replace_all(entities)
 
     def reserve_ids(self, used: Iterable[int]) -> None:
-        """Let `new_id` return larger ids than these. Requires `structure_lock`."""
+        """Make `new_id` return larger ids than these. Requires `structure_lock`."""
         self._last_id = max((self._last_id, *used))
 
     def check_name_is_free(self, name: str) -> None:
@@ -232,7 +232,7 @@ LONGEST_NAME = 1000
 
 
 def check_name(name: str, kind: str) -> None:
-    """Refuse a name that nothing can have; `kind` is `model` or `light`. Raises CommandError."""
+    """Check a name; `kind` is `model` or `light`. Raises CommandError."""
     if not name:
         raise CommandError(f"the name of a {kind} must not be empty")
     if len(name) > LONGEST_NAME:

@@ -93,10 +93,10 @@ class Simulator:
         return self._session.world
 
     @property
-    def changing(self) -> ContextManager[bool]:
-        """Hold it to read something and write it changed as one: others' changes wait.
+    def change_lock(self) -> ContextManager[bool]:
+        """The lock of all changes, for a read and a change that depends on it.
 
-        Not for plugins: who removes a model waits for those of the model.
+        Plugins must not hold it: the thread that removes a model waits for the model's plugins.
         """
         return self._session.structure_lock
 
@@ -144,7 +144,7 @@ class Simulator:
                 if session.supervisor.restarts != restarts:  # the new one has the old models
                     session.call(Batch((*self._settings_of(world), Pause(), Clear())))
                 session.world, self._world_meshes = world, meshes or {}
-                self.physics.adopt_world()
+                self.physics.store_world()
                 self._fill()
             for command in self.clock.resume_commands():
                 session.call(command)

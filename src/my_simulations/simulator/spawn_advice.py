@@ -19,18 +19,17 @@ NEIGHBOURS = 64
 """Most models for which overlaps are checked, so that spawning stays fast."""
 
 
-def _as_it_stands(entity: Entity, state: Callable[[int], Tuple[Pose, Twist]]) -> Model:
-    """The model with its links where they are: joints may have been put elsewhere, or have moved
-    since, and of a robot that has folded its legs only the base is lower.
+def _with_present_poses(entity: Entity, state: Callable[[int], Tuple[Pose, Twist]]) -> Model:
+    """Return the model with its links at their present poses.
 
-    `state` gives that of a row.
+    `state` returns the state of the link in a row.
     """
     links = [replace(link, pose=state(entity.first_link_row + n)[0])
              for n, link in enumerate(entity.model.links)]
     return replace(entity.model, pose=IDENTITY, links=links)
 
 
-def _near(new: Entity, entities: Sequence[Entity], snapshot: Snapshot) -> List[Entity]:
+def _find_near(new: Entity, entities: Sequence[Entity], snapshot: Snapshot) -> List[Entity]:
     """The new entity, and those of which a link may overlap one of its links."""
     values = snapshot.links
     spheres = [(*values[at:at + 3], reach) for at, reach in _locate_links(new)]
@@ -41,27 +40,27 @@ def _near(new: Entity, entities: Sequence[Entity], snapshot: Snapshot) -> List[E
 
 
 def _locate_links(entity: Entity) -> List[Tuple[int, float]]:
-    """Of each link where its row begins, and its reach."""
+    """Return the start of the row and the reach of each link."""
     return [((entity.first_link_row + n) * LINK_WIDTH, reach)
             for n, reach in enumerate(entity.reaches)]
 
 
-def arrival_advice(simulator: Simulator, name: str, meshes: Optional[MeshTable],
+def placement_warnings(simulator: Simulator, name: str, meshes: Optional[MeshTable],
                    written: Written = UNKNOWN) -> List[Issue]:
     """Warnings about implausible inertia, thin shapes, and overlaps with other models.
 
     `written` says where the new model is written.
     """
     if simulator.models.count > NEIGHBOURS:
-        models = [_as_it_stands(simulator.models.entity(name), simulator.states.link_at)]
+        models = [_with_present_poses(simulator.models.entity(name), simulator.states.link_at)]
     else:
         entities, snapshot = simulator.states.latest()
-        models = [_as_it_stands(entity, snapshot.link) for new in entities
-                  if new.model.name == name for entity in _near(new, entities, snapshot)]
+        models = [_with_present_poses(entity, snapshot.link) for new in entities
+                  if new.model.name == name for entity in _find_near(new, entities, snapshot)]
     return advice_issues(models, {name: meshes or {}}, written, only=name)
 
 
-def overlap_advice(simulator: Simulator, names: Sequence[str]) -> List[Issue]:
+def overlap_warnings(simulator: Simulator, names: Sequence[str]) -> List[Issue]:
     """Warnings about overlaps of models with others, at most one for each model.
 
     None for more than `NEIGHBOURS` names.
@@ -70,7 +69,7 @@ def overlap_advice(simulator: Simulator, names: Sequence[str]) -> List[Issue]:
         return []
     found: List[Issue] = []
     for name in names:
-        inside = [issue for issue in arrival_advice(simulator, name, None)
+        inside = [issue for issue in placement_warnings(simulator, name, None)
                   if issue.code == _INSIDE] if simulator.models.has(name) else []
         if inside:
             others = len(inside) - 1

@@ -86,10 +86,10 @@ class States:
         """Wait until snapshots show all states that were set. Raises CommandError."""
         self._session.await_posted()
 
-    def mounting(self, frame: str) -> Tuple[int, Pose]:
-        """Row of the link with which a frame moves, and its pose in that link.
+    def frame_mount(self, frame: str) -> Tuple[int, Pose]:
+        """Return the row of the link that carries a frame, and the frame's pose in it.
 
-        -1 and the world pose for a frame that stands still. Raises UnknownFrameError.
+        -1 and the world pose for a fixed frame. Raises UnknownFrameError.
         """
         with self._session.registry_lock:
             found = self._session.registry.frame(frame)

@@ -41,12 +41,12 @@ class _EngineEnd(NamedTuple):
     Attributes:
         reason: why it ended.
         is_replaced: it was killed because a change had failed halfway.
-        at_a_load: it crashed while it loaded a model.
+        is_during_load: it crashed while it loaded a model.
     """
 
     reason: str
     is_replaced: bool
-    at_a_load: bool
+    is_during_load: bool
 
 
 class Supervisor:
@@ -57,16 +57,16 @@ class Supervisor:
         restore: called in that thread after each restart with a submit function; restores the
             world. With `paused` True it must leave it paused.
         log: receives issues about crashes.
-        patience: wall seconds that a command may take without progress while the engine responds.
+        timeout: wall seconds that a command may take without progress while the engine responds.
             `Advance` has no limit.
         watchdog: detects an engine that hangs.
     """
 
     def __init__(self, engine_factory: Callable[[], Engine],
                  restore: Callable[["Callable[[Command], Reply]", bool], None],
-                 log: Callable[[Issue], None], patience: float = _COMMAND_S,
+                 log: Callable[[Issue], None], timeout: float = _COMMAND_S,
                  watchdog: Optional[Watchdog] = None) -> None:
-        self._patience = patience
+        self._timeout = timeout
         self._restore = restore
         self._log = log
         self._watchdog = watchdog or Watchdog()
@@ -78,7 +78,7 @@ class Supervisor:
         self._deaths: "queue.Queue[Optional[_EngineEnd]]" = queue.Queue()
         self._lost: Deque[Command] = deque()  # posted commands that no engine has applied
         self._ping_lock = threading.Lock()
-        self._shown = 0                       # number of a posted command that snapshots show
+        self._visible = 0   # number of the last posted command that snapshots contain
         self._recent: List[float] = []
         self._failure: Optional[str] = None
         self._engine: Optional[Engine] = None
@@ -112,9 +112,9 @@ class Supervisor:
         deaths: List[str] = []
         while True:
             engine = self.engine
-            if not self._ready.wait(self._patience):
+            if not self._ready.wait(self._timeout):
                 raise CommandError("the physics engine did not restart within "
-                                   f"{self._patience:g} s")
+                                   f"{self._timeout:g} s")
             if self._failure:
                 raise CommandError(self._failure)
             try:
@@ -123,7 +123,7 @@ class Supervisor:
                 if self._closing:
                     raise CommandError("the simulator is shutting down") from death
                 deaths += [str(death)] if death.is_suspect else []
-                self._ready.wait(self._patience)
+                self._ready.wait(self._timeout)
                 if isinstance(command, Advance) and not isinstance(death, EngineNotRunningError):
                     raise EngineLostError(
                         f"{death} during this request; the world was restored to "
@@ -157,15 +157,15 @@ class Supervisor:
         Do not call it from a thread of the engine or the supervisor. Raises as `call`.
         """
         engine = self._engine
-        if engine is None or engine.posted <= self._shown or self.is_over:
+        if engine is None or engine.posted <= self._visible or self.is_over:
             return
         wanted = engine.posted
-        with self._ping_lock:  # one ping serves all who wait meanwhile
-            if self._shown < wanted:
+        with self._ping_lock:  # one ping serves all waiting threads
+            if self._visible < wanted:
                 number = engine.posted
                 if not self._ready.is_set() or engine.ring.applied < number:
                     self.call(Ping())
-                self._shown = number
+                self._visible = number
 
     def close(self) -> None:
         """Stop the engine and the thread."""
@@ -182,9 +182,9 @@ class Supervisor:
         self._ready.clear()
         self._is_replacing = True
         engine.kill(f"a change failed halfway: {why}")
-        if not self._ready.wait(self._patience):
+        if not self._ready.wait(self._timeout):
             raise CommandError(f"{why}; the physics engine did not restart within "
-                               f"{self._patience:g} s")
+                               f"{self._timeout:g} s")
 
     # -- the supervisor's thread -----------------------------------------------------------------
 
@@ -218,13 +218,13 @@ class Supervisor:
             self._watchdog.begin()
 
     def _on_death(self, reason: str, unanswered: List[Command]) -> bool:
-        """Note a death, before the futures fail; see `Engine.on_death`."""
+        """Record a crash, before the futures fail; see `Engine.on_death`."""
         if self._closing:
             return False
         self._ready.clear()
         self._lost.extend(one.command for one in unanswered if isinstance(one, Post))
         death = _EngineEnd(reason, self._is_replacing, bool(unanswered) and not self._restoring
-                       and _brings_models(unanswered[0]))
+                       and _loads_models(unanswered[0]))
         self._is_replacing = False
         self._deaths.put(death)
         return bool(unanswered) and not isinstance(unanswered[0], Post) \
@@ -233,7 +233,7 @@ class Supervisor:
     def _restart_engine(self, death: _EngineEnd) -> None:
         now = time.monotonic()
         self._recent = [at for at in self._recent if now - at < _RAPID_S]
-        if not (death.is_replaced or death.at_a_load):  # otherwise the world is not the cause
+        if not (death.is_replaced or death.is_during_load):  # otherwise the world is not the cause
             self._recent.append(now)
         paused = len(self._recent) >= _RAPID_DEATHS
         if len(self._recent) > 3 * _RAPID_DEATHS:
@@ -282,23 +282,23 @@ class Supervisor:
         return self._answer(self._engine, command)
 
     def _answer(self, engine: Engine, command: Command) -> Reply:
-        patience = None if isinstance(command, Advance) else self._patience
+        timeout = None if isinstance(command, Advance) else self._timeout
         future = engine.submit(command)
         while True:
             beat, progress = engine.ring.words[HEARTBEAT], engine.ring.words[PROGRESS]
             try:
-                return future.result(patience)
+                return future.result(timeout)
             except FutureTimeout as late:
                 words = engine.ring.words
                 if words[HEARTBEAT] == beat and words[PROGRESS] != progress:
                     continue  # it is still working through a long batch of commands
                 raise EngineTimeoutError(
-                    f"the physics engine did not respond for {self._patience:g} s; "
+                    f"the physics engine did not respond for {self._timeout:g} s; "
                     f"{type(command).__name__} may still be executed") from late
 
 
-def _brings_models(command: Command) -> bool:
-    """Whether a command loads models: these are the first suspects after a crash."""
+def _loads_models(command: Command) -> bool:
+    """Whether a command loads models, which is the likeliest cause of a crash."""
     if isinstance(command, Batch):
-        return any(map(_brings_models, command.commands))
+        return any(map(_loads_models, command.commands))
     return isinstance(command, LoadModel)

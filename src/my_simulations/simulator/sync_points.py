@@ -65,7 +65,7 @@ class SyncPoints:
 
     @property
     def settings(self) -> int:
-        """Counts the settings of the world: clock, step size, models, an engine that takes over.
+        """Counts the settings of the world: clock, step size, models, a new engine.
 
         The engine waits after each, if a host is attached, until `allow` is given the new count.
         """
@@ -83,7 +83,7 @@ class SyncPoints:
         """Have the engine wait until the first `allow`.
 
         `before_advance` is called, in any thread, before steps are made on request: it returns when
-        the host has ordered what follows from all that it has received.
+        the host has sent the commands that follow from all received messages.
 
         Raises CommandError for a second host.
         """
@@ -97,7 +97,7 @@ class SyncPoints:
         self._session.supervisor.engine.notify(ring.words[STEP_BUDGET])
 
     def on_plugins(self, call: Callable[[], None]) -> None:
-        """Call a function, in any thread, before a model with plugins comes into the world.
+        """Call a function, in any thread, before a model with plugins is added.
 
         If it attaches a host, the world makes no step between that and the loading of the plugins.
         It must not wait for changes of models: the caller may hold the structure lock.
@@ -142,7 +142,7 @@ class SyncPoints:
         if self._session.ring.words[WAITS_FOR_ROOM]:
             self._session.supervisor.engine.notify()
 
-    def finish_changes(self) -> None:
+    def await_model_changes(self) -> None:
         """Wait until a change of models that the engine has carried out is in the registry, too."""
         if self._session.structure_lock.acquire(timeout=_CHANGE_S):
             self._session.structure_lock.release()

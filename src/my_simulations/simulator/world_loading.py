@@ -35,8 +35,8 @@ def start_world(name: str, resolver: Resolver, engines: Callable[[], Engine], lo
         steps: pause after this many steps; FOREVER for never.
         caller: see `load_world`.
         read: called when the file has been read.
-        progress: called with what is under way: a title, a text, how much is done, of how much
-            (0: unknown). What the meshes are divided into is told to `log`.
+        progress: called with a title, a text, the work done, and the whole work (0: unknown).
+            `log` receives notes about the decomposition of meshes.
 
     Raises:
         InputError: the world cannot be used.

@@ -13,7 +13,7 @@ from .entity import Entity
 
 
 @dataclass(frozen=True)
-class RememberedState:
+class CapturedState:
     """State of a model: world pose of its frame, twist of its canonical link, links and joints."""
 
     pose: Pose
@@ -28,7 +28,7 @@ class WorldState:
 
     step: int
     sim_ns: int
-    models: Dict[str, RememberedState]
+    models: Dict[str, CapturedState]
 
     @classmethod
     def of(cls, entities: Sequence[Entity], snapshot: Snapshot,
@@ -36,7 +36,7 @@ class WorldState:
         """The state in a snapshot; `now`: the present step count, if nothing has moved since."""
         step, clock = now
         return cls(step, clock.sim_ns(step), {
-            entity.model.name: RememberedState(*entity.state(snapshot), tuple(entity.link_names),
+            entity.model.name: CapturedState(*entity.state(snapshot), tuple(entity.link_names),
                                           entity.saved(snapshot))
             for entity in entities})
 
@@ -54,7 +54,7 @@ class WorldState:
         return commands
 
 
-def _commands(entity: Entity, was: RememberedState) -> List[Command]:
+def _commands(entity: Entity, was: CapturedState) -> List[Command]:
     """Restore an articulated model by its frame and joints, others link by link."""
     model = entity.model
     if model.static or (len(entity.link_names) == 1 and not model.joints):
@@ -65,7 +65,7 @@ def _commands(entity: Entity, was: RememberedState) -> List[Command]:
     joints = [SetJoints(tuple((entity.first_joint_row + n, position, rate)
                               for n, (position, rate) in enumerate(was.state.joints)))] \
         if was.state.joints else []
-    # Joints first: where the frame's link hangs on others, the others are placed by it. Rates of
+    # Joints first: if the frame's link is not the root, it places the links above it. Rates of
     # joints are lost when the model is moved.
     return [*joints, SetModelState(entity.model_id, was.pose, was.twist), *joints]
 
@@ -74,8 +74,8 @@ def initial_commands(entity: Entity, start: Optional[InitialState]) -> List[Comm
     """Commands that apply a saved initial state to a model that was just loaded.
 
     A model without joints gets the twist of each link. An articulated model moves as one rigid
-    body with the twist of its canonical link, unless it hangs on the world; its joint rates are
-    zero.
+    body with the twist of its canonical link, unless a joint connects it to the world; its joint
+    rates are zero.
     """
     if start is None or entity.model.static:
         return []
@@ -91,10 +91,10 @@ def initial_commands(entity: Entity, start: Optional[InitialState]) -> List[Comm
         pose = compose(entity.initial_pose, link.pose)
         if not entity.model.joints:
             commands.append(SetLinkState(entity.first_link_row + n, pose, twist))
-        elif n == entity.canonical and not _hangs_on_world(entity.model):
+        elif n == entity.canonical and not _is_jointed_to_world(entity.model):
             commands.append(SetModelState(entity.model_id, entity.initial_pose, twist))
     return commands
 
 
-def _hangs_on_world(model: Model) -> bool:
+def _is_jointed_to_world(model: Model) -> bool:
     return any(joint.parent == WORLD for joint in model.joints)

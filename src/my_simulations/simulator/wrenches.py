@@ -168,7 +168,7 @@ class Wrenches:
             ids: List[int] = []
             new: List[TimedForce] = []
             for link, force, torque, law, joint in wrenches:
-                row = session.registry.link_row_or_none(link) \
+                row = session.registry.scoped_link_row(link) \
                     if law is not None or any((*force, *torque)) else None
                 if row is None:
                     ids.append(0)
@@ -212,7 +212,7 @@ class Wrenches:
         """Replace all entries; the caller updates the engine."""
         self._forces = {force.force_id: force for force in forces}
 
-    def keep(self, forces: Sequence[TimedForce]) -> None:
+    def store(self, forces: Sequence[TimedForce]) -> None:
         """Add entries that the caller has sent to the engine."""
         self._forces.update({force.force_id: force for force in forces})
 

@@ -15,7 +15,7 @@ from my_simulations.geometry import STILL, Pose
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator import spawn_advice
 from my_simulations.simulator.simulator import Simulator
-from my_simulations.simulator.spawn_advice import arrival_advice, overlap_advice
+from my_simulations.simulator.spawn_advice import overlap_warnings, placement_warnings
 
 
 def cube(name, height, size=1.0, moment=0.17):
@@ -38,7 +38,7 @@ def sim():
 
 def said(sim, model):
     sim.models.spawn(model, model.pose)
-    return [(one.code, one.message) for one in arrival_advice(sim, model.name, {})]
+    return [(one.code, one.message) for one in placement_warnings(sim, model.name, {})]
 
 
 def test_a_model_that_stands_alone_needs_no_advice(sim):
@@ -56,9 +56,9 @@ def test_a_model_inside_others_is_told_with_them_and_them_alone(sim):
 def test_a_model_in_several_others_is_one_overlap_advice(sim):
     sim.models.spawn(cube("near", 5.2), Pose((0.0, 0.5, 5.2)))
     sim.models.spawn(cube("new", 4.8), Pose((0.0, 0.2, 4.8)))
-    (issue,) = overlap_advice(sim, ["new"])
+    (issue,) = overlap_warnings(sim, ["new"])
     assert issue.message.endswith(", and 1 more of its overlaps")
-    assert len([one for one in arrival_advice(sim, "new", {}) if one.code == issue.code]) == 2
+    assert len([one for one in placement_warnings(sim, "new", {}) if one.code == issue.code]) == 2
 
 
 def test_others_count_where_they_are_now(sim):
@@ -79,7 +79,7 @@ def test_legs_count_as_they_are_folded(sim):
     (text,) = (text for code, text in said(sim, robot) if code == "starts-inside")
     assert "robot::leg" in text
     sim.states.set_link_state("robot::leg", Pose((20, 0, 0.5)), STILL)
-    assert "starts-inside" not in [one.code for one in arrival_advice(sim, "robot", {})]
+    assert "starts-inside" not in [one.code for one in placement_warnings(sim, "robot", {})]
 
 
 def test_its_own_oddities_are_told(sim):
@@ -125,7 +125,8 @@ def test_advice_says_file_and_line_of_a_model_that_is_spawned_by_another_name(
     document = parse_document(text, Resolver(), "odd.file")
     entity, _ = document.read_entity()
     sim.models.spawn(replace(entity, name="new"), Pose((0, 0, 4.5)))
-    found = {one.code: one for one in arrival_advice(sim, "new", {}, document.written(entity.name))}
+    found = {one.code: one for one in placement_warnings(
+        sim, "new", {}, document.written(entity.name))}
     assert sorted(found) == ["inertia-odd", "starts-inside"]
     for code, where in (("inertia-odd", link), ("starts-inside", collision)):
         assert (found[code].file, found[code].line, found[code].xpath) == ("odd.file", *where)
@@ -136,6 +137,6 @@ def test_advice_gives_no_line_of_another_document(sim):
     document = parse_document(URDF, Resolver(), "odd.file")
     entity, _ = document.read_entity()
     sim.models.spawn(replace(entity, name="new", static=True), Pose((0, 0, 4.5)))
-    (met,) = (one for one in arrival_advice(sim, "new", {}, document.written(entity.name))
+    (met,) = (one for one in placement_warnings(sim, "new", {}, document.written(entity.name))
               if one.code == "starts-inside")
     assert (met.file, met.line) == ("odd.file", 0)

@@ -96,9 +96,9 @@ class Case:
     def state(self):
         """What must not change: the saved world, names, joints, pins, time, history, engine."""
         sim = self.sim
-        links = sim.models.links
+        links = sim.models.connections
         return (write_world(present_world(sim), None), sim.models.names(),
-                [joint.name for joint in links.between.joints], links.attached,
+                [joint.name for joint in links.joints.joints], links.attached,
                 links.pinned, links.held, sim.clock.step, sim.clock.sim_ns,
                 sim.wrenches.ids, self.history.undo_labels, self.history.redo_labels,
                 self.in_engine())
@@ -122,8 +122,9 @@ class Case:
         entities = {entity.model_id: entity for entity in sim._session.entities()}
         assert models == {number: (entity.first_link_row, entity.first_joint_row)
                           for number, entity in entities.items()}
-        assert connected == sorted(joint.name for joint in sim.models.links.between.joints)
-        pinned = set(sim.models.links.pinned + sim.models.links.held)
+        assert connected == sorted(joint.name for joint in sim.models.connections.joints.joints)
+        connections = sim.models.connections
+        pinned = set(connections.pinned + connections.held)
         assert held == {number for number, entity in entities.items()
                         if entity.model.name in pinned}
         assert forces == set(sim.wrenches.ids)

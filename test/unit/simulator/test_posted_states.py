@@ -126,7 +126,7 @@ def test_a_refusal_that_nobody_waits_for_is_logged(case):
 
 
 def test_a_state_is_set_while_models_change_and_waits_for_the_engine_then(case):
-    with case.sim.changing:
+    with case.sim.change_lock:
         thread, done = in_thread(lambda: case.put() or True)
         assert Gate.reached.wait(WAIT) and not done
         Gate.open.set()

@@ -52,8 +52,8 @@ class _SlowBackend(KinematicBackend):
 def watch():
     made = []
 
-    def begin(engine, patience):
-        made.append(Supervisor(engine, lambda submit, paused: None, lambda issue: None, patience))
+    def begin(engine, timeout):
+        made.append(Supervisor(engine, lambda submit, paused: None, lambda issue: None, timeout))
         return made[-1]
 
     yield begin

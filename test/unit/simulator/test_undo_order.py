@@ -283,7 +283,7 @@ def test_a_world_that_was_saved_at_the_oldest_step_is_unchanged_once_all_others_
     sim = case(box("a")).sim
     history = History(sim)
     history.do("light", AddLight(Light("first")))
-    history.saved()
+    history.mark_saved()
     for n in range(LONGEST):
         history.do(f"light {n}", AddLight(Light(f"l{n}")))
     history.undo(LONGEST - 1)

@@ -35,7 +35,7 @@ from ...simulator.operations import (
     pose_of,
 )
 from ...simulator.simulator import Simulator
-from ...simulator.spawn_advice import overlap_advice
+from ...simulator.spawn_advice import overlap_warnings
 from ..scene.plain_json import pose_of as pose_from
 from ..transport.protocol import Protocol
 from . import history_labels
@@ -96,7 +96,7 @@ class EditRequests:
         """
         label, operation, value = self._plan_operation(op, 0)
         self._history.do(label, operation, author)
-        for issue in overlap_advice(self._world, _list_moved_names(op, value)):
+        for issue in overlap_warnings(self._world, _list_moved_names(op, value)):
             self._report(issue)
         return value
 

@@ -100,7 +100,7 @@ class WorldFiles:
                                    despite_losses=True,  # the user confirmed it
                                    **self._chosen)
             self._ours.add(self.file)
-            self._history.saved()
+            self._history.mark_saved()
             return {"path": self.file, "left_out": left_out}
 
     def _save_copy(self, message: Dict[str, Any]) -> Dict[str, Any]:

@@ -59,7 +59,7 @@ class JointServices:
 
     def set(self, request: Any, _response: Any) -> str:
         """Set joint properties; arrays have one element per axis, empty ones change nothing."""
-        with self._simulator.changing:
+        with self._simulator.change_lock:
             return self._set(request)
 
     def _set(self, request: Any) -> str:

@@ -35,7 +35,7 @@ class LightServices:
 
     def set(self, request: Any, _response: Any) -> str:
         """Change a light; colours, attenuations, direction and pose of zeros are left unchanged."""
-        with self._simulator.changing:
+        with self._simulator.change_lock:
             return self._set(request)
 
     def _set(self, request: Any) -> str:

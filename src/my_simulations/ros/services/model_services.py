@@ -21,7 +21,7 @@ from ...formats.reading import ParsedDocument, parse_document
 from ...geometry import IDENTITY, Pose, compose
 from ...resources.resolver import Resolver
 from ...simulator.simulator import Simulator
-from ...simulator.spawn_advice import arrival_advice
+from ...simulator.spawn_advice import placement_warnings
 from ..message_conversion import LENGTH, check_vector, pose_from_message
 from .entity_errors import gazebo_prefix, name_taken_message
 
@@ -153,7 +153,7 @@ class ModelServices:
         with gazebo_prefix("", NO_FRAME), name_taken_message(f"model {model.name!r}"):
             self._simulator.models.spawn(model, where, frame, meshes, replace, launched=launched)
         faults = self._changed(model.name)   # the plugin host has logged them
-        self._report(arrival_advice(self._simulator, model.name, meshes,
+        self._report(placement_warnings(self._simulator, model.name, meshes,
                                     document.written(entity.name)))
         return "Successfully spawned entity" + _warnings_in_status([*faults, *issues])
 

@@ -79,7 +79,7 @@ def change_parameters(simulator: Simulator, values: Mapping[str, Value]) -> None
 
     Raises CommandError: a value is out of range; nothing has changed.
     """
-    with simulator.changing:
+    with simulator.change_lock:
         _change(simulator, values)
 
 

@@ -1,4 +1,4 @@
-"""What connects and pins the models of a world."""
+"""Joints between the models of a world, and pins of models."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
@@ -16,12 +16,12 @@ class ModelConnections:
     """Joints between models, and the models that are pinned.
 
     Attributes:
-        between: the joints.
+        joints: the joints.
         attached: the names of those that `Models.attach` made.
         pinned, held: names of models, see `Models.pin` and `Models.hold`.
     """
 
-    between: InterModelJoints = field(default_factory=InterModelJoints)
+    joints: InterModelJoints = field(default_factory=InterModelJoints)
     attached: Tuple[str, ...] = ()
     pinned: Tuple[str, ...] = ()
     held: Tuple[str, ...] = ()
@@ -29,34 +29,34 @@ class ModelConnections:
     @property
     def permanent_joints(self) -> InterModelJoints:
         """The joints between models without those of `Models.attach`, which a reset removes."""
-        return self.between.without_joints(self.attached)
+        return self.joints.without_joints(self.attached)
 
     def without_model(self, model: str) -> "ModelConnections":
-        return replace(self, between=self.between.without_model(model),
+        return replace(self, joints=self.joints.without_model(model),
                        pinned=_others(self.pinned, model), held=_others(self.held, model))
 
     def with_model_renamed(self, old: str, new: str, registry: Registry) -> "ModelConnections":
-        """After a model was edited, and perhaps renamed."""
+        """Return the connections after a model was edited, and perhaps renamed."""
         return ModelConnections(
-            self.between.with_model_renamed(old, new, self.attached).with_existing_links(registry),
+            self.joints.with_model_renamed(old, new, self.attached).with_existing_links(registry),
             self.attached,
             *(tuple(new if name == old else name for name in names)
               for names in (self.pinned, self.held)))
 
     def with_joint(self, joints: InterModelJoints, name: str) -> "ModelConnections":
-        """After `Models.attach` made the joint `name`; `joints`: all there are now."""
-        return replace(self, between=joints, attached=(*_others(self.attached, name), name))
+        """Return the connections with the joint `name` of `Models.attach`; `joints`: all joints."""
+        return replace(self, joints=joints, attached=(*_others(self.attached, name), name))
 
     def without_joint(self, name: str) -> "ModelConnections":
-        return replace(self, between=self.between.without_joints((name,)),
+        return replace(self, joints=self.joints.without_joints((name,)),
                        attached=_others(self.attached, name))
 
     def detached(self) -> "ModelConnections":
-        """After everything that `Models.attach` joined was detached."""
-        return replace(self, between=self.permanent_joints, attached=())
+        """Return the connections without the joints of `Models.attach`."""
+        return replace(self, joints=self.permanent_joints, attached=())
 
     def joint(self, name: str) -> List[Joint]:
-        return self.between.with_name(name).joints
+        return self.joints.with_name(name).joints
 
     def detach_commands(self) -> List[Command]:
         """Commands that remove the joints of `Models.attach` from the engine."""
@@ -77,7 +77,7 @@ class ModelConnections:
 
     def commands(self, registry: Registry) -> List[Command]:
         """Commands that make the joints and pins in an engine that has loaded the models."""
-        commands: List[Command] = list(self.between.commands(registry))
+        commands: List[Command] = list(self.joints.commands(registry))
         if self.pinned or self.held:
             commands.append(self.pin_command(registry))
         return commands
