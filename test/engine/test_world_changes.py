@@ -51,7 +51,7 @@ def test_drag_follows_another_wind_in_the_next_step(case):
     names = {"C_wxy": 0.5, "C_wz": 0.5, "C_mxy": 0.0, "C_mz": 0.0}
     one = case(drone, parameters={"quadrotor_aerodynamics": names})
     one.sim.clock.advance(7)
-    one.sim.scene.set_wind(Wind((0.0, 0.0, 3.0)))
+    one.sim.scene.set_field("wind", Wind((0.0, 0.0, 3.0)))
     one.sim.clock.advance(1)
     assert speed(one, "drone") == pytest.approx(0.001 * 0.5 * 9.0 / 2.0, rel=1e-6)
 

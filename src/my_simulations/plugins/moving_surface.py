@@ -1,10 +1,9 @@
 """A surface that moves at a velocity, such as a conveyor belt."""
 from __future__ import annotations
 
-from typing import Optional
-
 from ..description.model import INFINITE
-from .context import CallHandle, Context
+from .call_slot import CallSlot
+from .context import Context
 
 _EFFORT = 1e6         # N: the surface keeps its velocity, whatever lies on it
 _CHECKS = 20.0        # between two jumps
@@ -28,19 +27,17 @@ class MovingSurface:
         self._context, self._joint = context, context.joint(joint)
         axis = self._joint.spec.axis
         self._lower, self._upper = (0.0, INFINITE) if axis is None else (axis.lower, axis.upper)
-        self._timer: Optional[CallHandle] = None
+        self._timer = CallSlot()
         self.velocity = 0.0
 
     def set_velocity(self, velocity: float) -> None:
         """Keep a velocity along the axis of the joint, m/s, from the next step on."""
         self.velocity = velocity
         self._joint.drive(velocity, _EFFORT)
-        if self._timer is not None:
-            self._timer.end()
-            self._timer = None
+        self._timer.end()
         span = abs(self._end() - self._start())
         if velocity and 0.0 < span < INFINITE:
-            self._timer = self._context.every(_CHECKS * abs(velocity) / span, self._jump_back)
+            self._timer.set(self._context.every(_CHECKS * abs(velocity) / span, self._jump_back))
 
     def _start(self) -> float:
         """The position to which the joint jumps back."""

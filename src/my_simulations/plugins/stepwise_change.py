@@ -4,6 +4,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Callable, Optional
 
+from .call_slot import CallSlot
 from .context import CallHandle, Context
 
 _NS = 10 ** 9
@@ -24,19 +25,19 @@ class StepwiseChange:
     def __init__(self, context: Context, hertz: float, update: Callable[[float], bool]) -> None:
         self._context, self._hertz, self._update = context, hertz, update
         self._period = Fraction(hertz).limit_denominator(10 ** 6) if hertz > 1e-6 else None
-        self._timer: Optional[CallHandle] = None
+        self._timer = CallSlot()
         self._last_ns: Optional[int] = None
 
     @property
     def active(self) -> bool:
         """Whether it is called at the next step of the rate."""
-        return self._timer is not None
+        return self._timer.is_active
 
     def begin(self) -> None:
         """Call `update` at the steps of the rate, from the next one until it is done."""
-        if self._timer is None:
+        if not self._timer.is_active:
             self._last_ns = None
-            self._timer = self._context.every(self._hertz, self._call)
+            self._timer.set(self._context.every(self._hertz, self._call))
 
     def begin_after(self, ns: int) -> CallHandle:
         """Begin at the first step of the rate that is later than a sim time (ns)."""
@@ -47,12 +48,10 @@ class StepwiseChange:
         return self._context.once(due, self._begin_here)
 
     def end(self) -> None:
-        if self._timer is not None:
-            self._timer.end()
-            self._timer = None
+        self._timer.end()
 
     def _begin_here(self) -> None:
-        if self._timer is None:
+        if not self._timer.is_active:
             self.begin()
             self._call()
 

@@ -34,7 +34,6 @@ from .inter_model_joints import DeletedModel
 from .load_groups import small_groups
 from .models import NewModel
 from .order_slot import OrderSlot
-from .scene import SceneSettings
 from .simulator import Simulator
 from .world_state import WorldState
 
@@ -350,25 +349,16 @@ class SetPhysics:
         return back
 
 
-SETTERS: Dict[str, Callable[[SceneSettings, Any], None]] = {
-    "scene": SceneSettings.set_scene, "gui_camera": SceneSettings.set_gui_camera,
-    "wind": SceneSettings.set_wind, "atmosphere": SceneSettings.set_atmosphere,
-    "magnetic_field": SceneSettings.set_magnetic_field,
-    "spherical_coordinates": SceneSettings.set_spherical_coordinates,
-}
-"""Fields of a world besides models, lights and physics, each with its setter."""
-
-
 @dataclass(frozen=True)
 class SetWorldField:
-    """Set a field of the world, one of `SETTERS`."""
+    """Set a field of the world, one of `scene.WORLD_FIELDS`."""
 
     name: str
     value: Any
 
     def apply(self, world: Simulator) -> Operation:
         back = SetWorldField(self.name, getattr(world.world, self.name))
-        SETTERS[self.name](world.scene, self.value)
+        world.scene.set_field(self.name, self.value)
         return back
 
 
@@ -381,7 +371,7 @@ class SetWorldPlugins:
     def apply(self, world: Simulator) -> Operation:
         """Set the plugins; those that are not the same as before are loaded again."""
         back = SetWorldPlugins(tuple(world.world.plugins))
-        world.scene.set_plugins(list(self.plugins))
+        world.scene.set_field("plugins", list(self.plugins))
         return back
 
 

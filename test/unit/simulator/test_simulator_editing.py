@@ -184,12 +184,13 @@ CAMERA = GuiCamera("mine", Pose((1, 2, 3), quat_from_rpy(0, 0.5, 1)), "fps", tra
 
 def test_changed_surroundings_are_saved_and_read_again(case, tmp_path):
     sim = case(box("a")).sim
-    sim.scene.set_scene(SCENE)
-    sim.scene.set_gui_camera(CAMERA)
-    sim.scene.set_wind(Wind((1, 2, 3)))
-    sim.scene.set_atmosphere(Atmosphere(temperature=300.0))
-    sim.scene.set_magnetic_field((1e-5, 2e-5, 3e-5))
-    sim.scene.set_spherical_coordinates(SphericalCoordinates(latitude_deg=48.5, heading_deg=10.0))
+    sim.scene.set_field("scene", SCENE)
+    sim.scene.set_field("gui_camera", CAMERA)
+    sim.scene.set_field("wind", Wind((1, 2, 3)))
+    sim.scene.set_field("atmosphere", Atmosphere(temperature=300.0))
+    sim.scene.set_field("magnetic_field", (1e-5, 2e-5, 3e-5))
+    sim.scene.set_field("spherical_coordinates",
+                        SphericalCoordinates(latitude_deg=48.5, heading_deg=10.0))
     found = again(present_world(sim), tmp_path)
     assert found.scene == SCENE
     close(found.gui_camera.pose, CAMERA.pose.position, CAMERA.pose.orientation)
@@ -207,8 +208,8 @@ def test_what_the_tables_do_not_know_of_a_scene_is_kept(case, tmp_path):
         "<sky><time>3</time><material>stars</material></sky></scene>"
         "<gui fullscreen='1'><plugin name='p' filename='libp.so'/></gui>")
     sim._session.world = replace(sim.world, scene=read.scene, gui=read.gui)
-    sim.scene.set_scene(SCENE)
-    sim.scene.set_gui_camera(CAMERA)
+    sim.scene.set_field("scene", SCENE)
+    sim.scene.set_field("gui_camera", CAMERA)
     text = write_world(sim.world).decode()
     assert "<mood>grim</mood>" in text and "stars" in text
     assert text.count("<ambient>") == 2 - 1
@@ -219,10 +220,10 @@ def test_what_the_tables_do_not_know_of_a_scene_is_kept(case, tmp_path):
 
 def test_sky_and_camera_can_be_taken_away(case, tmp_path):
     sim = case().sim
-    sim.scene.set_scene(SCENE)
-    sim.scene.set_gui_camera(CAMERA)
-    sim.scene.set_scene(replace(SCENE, sky=None, fog=None))
-    sim.scene.set_gui_camera(None)
+    sim.scene.set_field("scene", SCENE)
+    sim.scene.set_field("gui_camera", CAMERA)
+    sim.scene.set_field("scene", replace(SCENE, sky=None, fog=None))
+    sim.scene.set_field("gui_camera", None)
     found = again(sim.world, tmp_path)
     assert (found.scene.sky, found.scene.fog, found.gui_camera) == (None, None, None)
 

@@ -14,7 +14,6 @@ from ...description.surroundings import GuiCamera, SphericalCoordinates
 from ...errors import CommandError
 from ...resources.resolver import Resolver, ResourceNotFoundError
 from ...simulator.operations import (
-    SETTERS,
     EditJoint,
     EditLight,
     EditModel,
@@ -23,6 +22,7 @@ from ...simulator.operations import (
     SetPoses,
     SetWorldField,
 )
+from ...simulator.scene import WORLD_FIELDS
 from ...simulator.simulator import Simulator
 from .inserts import check_meshes
 from .property_path import with_value
@@ -87,9 +87,9 @@ def _of_world(world: Simulator, path: str, value: Any) -> Operation:
     if name == "gravity":
         holder = with_value(replace(world.world, gravity=world.physics.gravity), path, value)
         return SetPhysics(world.physics.settings, holder.gravity)
-    if name not in SETTERS:
+    if name not in WORLD_FIELDS:
         raise CommandError(f"unknown world property {path!r}; known: physics, gravity, "
-                           + ", ".join(SETTERS))
+                           + ", ".join(WORLD_FIELDS))
     holder = world.world
     if rest and getattr(holder, name) is None and name in _NEW:
         holder = replace(holder, **{name: _NEW[name]()})

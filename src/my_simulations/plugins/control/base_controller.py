@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from typing import Any, Deque, List, Optional, Sequence, Tuple
+from typing import Any, Deque, List, Sequence, Tuple
 
 from ...description.model import Joint as JointSpec
 from ...description.shapes import Cylinder, Sphere
 from ...geometry import Vec3
-from ..context import CallHandle, PluginError, Publication
+from ..call_slot import CallSlot
+from ..context import PluginError, Publication
 from ..drive.odometry import planar_pose, planar_twist
 from ..frames import stamp_message
 from ..standard_messages import diagonal_covariance, odometry_message
@@ -112,7 +113,7 @@ class BaseController(Controller):
                             for path in ("linear/x", "linear/y", "angular/z"))
         self.hertz = 1.0 / self.period if self.period else max(_UPDATE_HZ, self.publish_hz)
         self._change = StepwiseChange(self.context, self.hertz, self._update)
-        self._end: Optional[CallHandle] = None   # of the last command
+        self._expiry = CallSlot()   # of the last command
         self._count_hz = self.hertz if self.period else self.publish_hz or _UPDATE_HZ
         window = s.number("velocity_rolling_window_size", 10.0) * self._count_hz / _ORIGINAL_HZ
         self.window = max(1, round(window))
@@ -150,14 +151,9 @@ class BaseController(Controller):
                          transforms=self.broadcasts)
 
     def stop(self) -> None:
-        self._end_command()
+        self._expiry.end()
         self._change.end()
         self.drive(STANDING)
-
-    def _end_command(self) -> None:
-        if self._end is not None:
-            self._end.end()
-            self._end = None
 
     def _receive(self, message: Any) -> None:
         self.follow_twist(message)
@@ -174,8 +170,7 @@ class BaseController(Controller):
         if finite:
             self.command = command
             self._time_out.begin()
-            self._end_command()
-            self._end = self._change.begin_after(self.context.now_ns + self._time_out.ns)
+            self._expiry.set(self._change.begin_after(self.context.now_ns + self._time_out.ns))
             self._change.begin()
         elif not self._told_of_numbers:
             self._told_of_numbers = True

@@ -1,11 +1,12 @@
 """libgazebo_ros_control.so: the joints of a robot for ros_control, and its controller manager."""
 from __future__ import annotations
 
-from typing import Any, Callable, List, Mapping, Optional, Type
+from typing import Any, Callable, List, Mapping, Type
 
 from ...description.transmission import Transmission
 from ..base import Plugin
-from ..context import CallHandle, Context
+from ..call_slot import CallSlot
+from ..context import Context
 from .franka import FrankaArm
 from .hardware import Hardware, PalHardware, SwitchingHardware
 from .manager import ControllerManager
@@ -118,7 +119,7 @@ class InitialHold:
     def __init__(self, context: Context, hardware: Hardware,
                  claimed: Callable[[], List[str]]) -> None:
         self._context, self._hardware, self._claimed = context, hardware, claimed
-        self._timer: Optional[CallHandle] = None
+        self._timer = CallSlot()
         self._limited = False
 
     def begin(self) -> None:
@@ -136,12 +137,10 @@ class InitialHold:
             self._wait(FURTHER_S)
 
     def _wait(self, seconds: float) -> None:
-        if self._timer is not None:
-            self._timer.end()
-        self._timer = self._context.once(self._context.now_ns + round(seconds * 1e9), self._end)
+        self._timer.set(self._context.once(self._context.now_ns + round(seconds * 1e9), self._end))
 
     def _end(self) -> None:
-        self._timer = None
+        self._timer.end()
         released = self._hardware.end_holds(but=self._claimed())
         if released and not self._limited:
             self._context.info(f"no controller has started within {PATIENCE_S:g} s of sim time; "

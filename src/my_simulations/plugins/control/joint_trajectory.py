@@ -12,7 +12,8 @@ from ...engine.drive_commands import PidGains
 from ...engine.servo_law import wrapped_angle
 from ...engine.spline import Spline, constant_segment, segment_between
 from ..actions import ActionServer, Goal
-from ..context import CallHandle, RequestError
+from ..call_slot import CallSlot
+from ..context import RequestError
 from .controller import RUNNING, Controller
 from .hardware import POSITION, HardwareJoint
 from .trajectory import (
@@ -61,7 +62,7 @@ class JointTrajectory(Controller):
         self._late = s.number("constraints/goal_time", 0.0)
         self._splines: List[Spline] = []
         self._goal: Optional[_Following] = None
-        self._watch: Optional[CallHandle] = None
+        self._watch = CallSlot()
         self._begun = 0.0
         self._seen: List[_Tracked] = []
         self._seen_at, self._seen_of = -1, self._splines
@@ -82,7 +83,7 @@ class JointTrajectory(Controller):
             self.observe(self._state_hz, self._publish_state, [self._state])
 
     def stop(self) -> None:
-        self._unwatch()
+        self._watch.end()
         self._preempt("the controller was stopped")
 
     # -- commands ----------------------------------------------------------------------------------
@@ -170,8 +171,8 @@ class JointTrajectory(Controller):
         for joint, spline, gains, ahead in zip(self._joints, self._splines, self._gains,
                                                self._feedforward):
             _follow(joint, spline, gains, ahead, self._time(spline))
-        if self._watch is None and self._moves():
-            self._watch = self.context.every(self.update_hz(_LOOK_HZ), self._check_goal)
+        if not self._watch.is_active and self._moves():
+            self._watch.set(self.context.every(self.update_hz(_LOOK_HZ), self._check_goal))
 
     # -- while it moves ----------------------------------------------------------------------------
 
@@ -194,15 +195,10 @@ class JointTrajectory(Controller):
             self._judge(following, self._tracked())
             self._send_feedback(following)
         if not self._moves():
-            self._unwatch()
-            self._send()
-        elif self._watch is None:
-            self._send()
-
-    def _unwatch(self) -> None:
-        if self._watch is not None:
             self._watch.end()
-            self._watch = None
+            self._send()
+        elif not self._watch.is_active:
+            self._send()
 
     def _judge(self, following: "_Following", axes: "List[_Tracked]") -> None:
         for n, (axis, spline) in enumerate(zip(axes, self._splines)):

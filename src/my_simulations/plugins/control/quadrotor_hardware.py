@@ -14,7 +14,8 @@ from typing import Any, Callable, Dict, NamedTuple, Optional, Sequence
 from ...description.transmission import Transmission
 from ...engine.wrench_laws import Wrench
 from ...geometry import Vec3, conjugate, norm, rotate, rpy_from_quat, scale
-from ..context import CallHandle, Context, PluginError
+from ..call_slot import CallSlot
+from ..context import Context, PluginError
 from ..flight.body_wrench import NO_WRENCH, hold_wrench
 from ..frames import add_tf_prefix
 from ..standard_messages import wrench_message
@@ -97,7 +98,7 @@ class QuadrotorHardware(Hardware):
         self.preempted = self.running = False
         self._updates: Dict[int, Callable[[float], None]] = {}
         self._begins: Dict[int, Callable[[], None]] = {}
-        self._timer: Optional[CallHandle] = None
+        self._timer = CallSlot()
         self._wrench = NO_WRENCH
         self._period = 0.0
         limits = Settings(context, "wrench_limits")
@@ -139,7 +140,7 @@ class QuadrotorHardware(Hardware):
         self._updates[place], self._begins[place] = update, begin
         if period != self._period:
             self._period = period
-            self._stop()
+            self._timer.end()
         self._begin()
 
     def leave(self, place: int) -> None:
@@ -170,19 +171,14 @@ class QuadrotorHardware(Hardware):
             self._end()
 
     def _begin(self) -> None:
-        if self.running and self._updates and self._timer is None:
+        if self.running and self._updates and not self._timer.is_active:
             self._last_ns = self._context.now_ns
-            self._timer = self._context.every(1.0 / self._period if self._period > 0.0 else 0.0,
-                                              self._update)
-
-    def _stop(self) -> None:
-        if self._timer is not None:
-            self._timer.end()
-            self._timer = None
+            self._timer.set(self._context.every(
+                1.0 / self._period if self._period > 0.0 else 0.0, self._update))
 
     def _end(self) -> None:
-        if self._timer is not None:
-            self._stop()
+        if self._timer.is_active:
+            self._timer.end()
             self._wrench = NO_WRENCH
             hold_wrench(self._context, self.link, self._wrench)
 

@@ -5,7 +5,8 @@ import math
 from typing import Any, List, Optional, Sequence, Tuple
 
 from ...geometry import compose, inverse
-from ..context import CallHandle, Context, Joint, Publication
+from ..call_slot import CallSlot
+from ..context import Context, Joint, Publication
 from ..finite_messages import finite_only
 from ..frames import add_tf_prefix
 from ..standard_messages import joint_state_message
@@ -29,17 +30,17 @@ class VelocityCommand:
         """
         self._context, self._change = context, change
         self._time_out = TimeOut(context, timeout) if timeout is not None else None
-        self._expiry: Optional[CallHandle] = None
+        self._expiry = CallSlot()
         self.stop()
         context.subscribe(topic, "geometry_msgs/Twist", finite_only(context, topic, self._receive))
 
     def stop(self) -> None:
         self.x = self.y = self.yaw = 0.0
-        self._end_expiry()
+        self._expiry.end()
 
     def clock_set(self) -> None:
         """Schedule the expiry of the last command again after sim time was set back."""
-        if self._expiry is not None:
+        if self._expiry.is_active:
             self._begin_expiry()
 
     def _receive(self, message: Any) -> None:
@@ -60,14 +61,8 @@ class VelocityCommand:
             self.stop()
 
     def _begin_expiry(self) -> None:
-        self._end_expiry()
         if self._time_out is not None and self._change is not None:
-            self._expiry = self._change.begin_after(self._time_out.end_ns)
-
-    def _end_expiry(self) -> None:
-        if self._expiry is not None:
-            self._expiry.end()
-            self._expiry = None
+            self._expiry.set(self._change.begin_after(self._time_out.end_ns))
 
 
 class WheelFrames:

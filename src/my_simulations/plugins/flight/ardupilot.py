@@ -14,13 +14,14 @@ import select
 import socket
 import struct
 from dataclasses import replace
-from typing import Callable, List, NamedTuple, Optional
+from typing import List, NamedTuple, Optional
 
 from ...engine.drive_commands import JointServo, PidGains
 from ...geometry import IDENTITY, Pose, Vec3, compose, conjugate, inverse, quat_from_rpy, rotate
 from ...sensing.sensor_models import acceleration_between, measure_motion, velocity_at
 from ..base import Plugin
-from ..context import CallHandle, Joint, PluginError
+from ..call_slot import CallSlot
+from ..context import Joint, PluginError
 from ..parameters import Parameters
 
 _LOOK_HZ = 50.0
@@ -70,7 +71,7 @@ class ArduPilot(Plugin):
         self._most_misses = p.integer("connectionTimeoutMaxCount", 10)
         self._answer = (p.text("fdm_addr", "127.0.0.1"), p.integer("fdm_port_out", 9003))
         self._listen(p.text("listen_addr", "127.0.0.1"), p.integer("fdm_port_in", 9002))
-        self._timer: Optional[CallHandle] = None
+        self._timer = CallSlot()
         self._wait_for_first()
 
     def _channel(self, p: Parameters, number: int) -> Channel:
@@ -140,12 +141,7 @@ class ArduPilot(Plugin):
 
     def _wait_for_first(self) -> None:
         self._misses = 0
-        self._begin(_LOOK_HZ, self._await_packet)
-
-    def _begin(self, hertz: float, call: Callable[[], None]) -> None:
-        if self._timer is not None:
-            self._timer.end()
-        self._timer = self.context.every(hertz, call)
+        self._timer.set(self.context.every(_LOOK_HZ, self._await_packet))
 
     def _await_packet(self) -> None:
         """Follow ArduPilot from its first packet on."""
@@ -153,7 +149,7 @@ class ArduPilot(Plugin):
         if floats is not None:
             self._last_ns = self.context.now_ns
             self._before = self._velocity()
-            self._begin(0.0, self._step)
+            self._timer.set(self.context.every(0.0, self._step))
             self._follow(floats)
 
     def _step(self) -> None:

@@ -16,7 +16,8 @@ from typing import Any, Deque, List, NamedTuple, Optional, Sequence, Tuple
 from ...engine.wrench_laws import BodyDrag, Wrench, clamped_vector
 from ...geometry import Vec3
 from ..base import Plugin
-from ..context import CallHandle, Context, PluginError
+from ..call_slot import CallSlot
+from ..context import Context, PluginError
 from ..finite_messages import finite_only
 from ..frames import stamp_message
 from ..standard_messages import wrench_message
@@ -130,13 +131,11 @@ class QuadrotorPropulsion(Plugin):
         if p.text("supplyTopic", "supply"):
             self._publish_supply()
             context.observe(_SUPPLY_HZ, self._publish_supply, [self._supply])
-        self._timer: Optional[CallHandle] = None
+        self._timer = CallSlot()
         self.reset()
 
     def reset(self) -> None:
-        if self._timer is not None:
-            self._timer.end()
-            self._timer = None
+        self._timer.end()
         self._rotors = [Rotor()] * 4
         self._voltages = [0.0] * 4
         self._on = False
@@ -167,9 +166,9 @@ class QuadrotorPropulsion(Plugin):
         self._queue.append((due, volts if len(volts) == 4 else [0.0] * 4))
         self._on = True
         self._last_command_ns = self.context.now_ns
-        if self._timer is None:
+        if not self._timer.is_active:
             self._last_ns = self.context.now_ns
-            self._timer = self.context.every(0.0, self.update)
+            self._timer.set(self.context.every(0.0, self.update))
 
     def _apply_commands(self) -> None:
         now = self.context.now_ns

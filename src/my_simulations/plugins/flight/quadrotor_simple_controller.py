@@ -9,7 +9,7 @@ motors are on; motors that the service `shutdown` has stopped need another comma
 from __future__ import annotations
 
 import math
-from typing import Any, Optional
+from typing import Any
 
 from ...geometry import (
     Quat,
@@ -24,7 +24,7 @@ from ...geometry import (
 )
 from ...geometry_messages import fill_wrench
 from ..base import Plugin
-from ..context import CallHandle
+from ..call_slot import CallSlot
 from ..finite_messages import finite_only
 from ..sensors.hector_errors import rate_of
 from .body_wrench import NO_WRENCH, hold_wrench
@@ -58,7 +58,7 @@ class QuadrotorSimpleController(Plugin):
             "wrenchTopic", "wrench_out")), "geometry_msgs/Wrench", 10)
         context.serve("engage", "std_srvs/Empty", lambda request, response: self._engage())
         context.serve("shutdown", "std_srvs/Empty", lambda request, response: self._shut_down())
-        self._timer: Optional[CallHandle] = None
+        self._timer = CallSlot()
         self._begin()
 
     def _topic(self, parameter: str, default: str) -> str:
@@ -70,9 +70,7 @@ class QuadrotorSimpleController(Plugin):
         self._wrench = NO_WRENCH
 
     def reset(self) -> None:
-        if self._timer is not None:
-            self._timer.end()
-            self._timer = None
+        self._timer.end()
         self._begin()
         self._apply()
 
@@ -82,22 +80,21 @@ class QuadrotorSimpleController(Plugin):
     def _receive(self, message: Any) -> None:
         self._command = (message.linear.x, message.linear.y, message.linear.z)
         self._yaw_rate = message.angular.z
-        if self._auto_engages and self._timer is None and self._command[2] > _TAKE_OFF:
+        if self._auto_engages and not self._timer.is_active and self._command[2] > _TAKE_OFF:
             self._engage()
 
     def _engage(self) -> None:
-        if self._timer is not None:
+        if self._timer.is_active:
             return
         for pid in (self._roll, self._pitch, self._yaw, self._x, self._y, self._z):
             pid.reset()
         self._velocity = self._link.twist.linear
         self.clock_set()
-        self._timer = self.context.every(self._hertz, self.update)
+        self._timer.set(self.context.every(self._hertz, self.update))
 
     def _shut_down(self) -> None:
-        if self._timer is not None:
+        if self._timer.is_active:
             self._timer.end()
-            self._timer = None
             self._wrench = NO_WRENCH
             self._apply()
             self._publish()

@@ -9,12 +9,12 @@ turns them the wrong way.
 from __future__ import annotations
 
 import random
-from typing import Any, Optional, Tuple
+from typing import Any, Tuple
 
 from ...geometry import ZERO3, Vec3, conjugate, norm, rotate, rpy_from_quat, scale, subtract
 from ...geometry_messages import fill_pose, fill_vector
 from ..base import Plugin
-from ..context import CallHandle
+from ..call_slot import CallSlot
 from ..finite_messages import finite_only
 from .body_wrench import NO_WRENCH, hold_wrench
 from .filtered_pid import FilteredPid
@@ -59,7 +59,7 @@ class SjtuDrone(Plugin):
         context.subscribe("dronevel_mode" if own else "/drone/vel_mode", "std_msgs/Bool",
                           self._choose_velocities)
         self._moves_to_positions = self._tilts_by_velocity = False
-        self._timer: Optional[CallHandle] = None   # while it is not landed
+        self._timer = CallSlot()   # while it is not landed
         self.reset()
         context.observe(0.0, self._publish, [self._poses, self._velocities, self._accelerations],
                         resume=self._begin_motion)
@@ -107,7 +107,7 @@ class SjtuDrone(Plugin):
             self._start(_TAKING_OFF)
             self._velocity, self._position = self._link.twist.linear, self._link.pose.position
             self._last_ns = self.context.now_ns
-            self._timer = self.context.every(0.0, self.update)
+            self._timer.set(self.context.every(0.0, self.update))
 
     def _land(self) -> None:
         if self._state in (_FLYING, _TAKING_OFF):
@@ -118,9 +118,7 @@ class SjtuDrone(Plugin):
 
     def _switch_off(self) -> None:
         self._state = _LANDED
-        if self._timer is not None:
-            self._timer.end()
-            self._timer = None
+        self._timer.end()
         hold_wrench(self.context, self._link, NO_WRENCH)
 
     def update(self) -> None:

@@ -11,11 +11,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Dict, List, NamedTuple, Optional, Tuple
+from typing import Dict, List, NamedTuple, Tuple
 
 from ...geometry import Vec3, add, conjugate, dot, inverse, norm, rotate, scale, subtract, transform
 from ..base import Plugin
-from ..context import CallHandle, PluginError
+from ..call_slot import CallSlot
+from ..context import PluginError
 from ..parameters import Parameters
 
 _FORGET = 1e-6  # N: a contact that does not press
@@ -83,7 +84,7 @@ class GraspFix(Plugin):
             context.warn("<disable_collisions_on_attach> has no effect: held objects still collide")
         hertz = p.number("update_rate", 5.0)
         self._rare = 0.0 < hertz < _SAMPLE_HZ
-        self._samples: Optional[CallHandle] = None
+        self._samples = CallSlot()
         self._step = -1
         context.every(hertz, self.update)
 
@@ -127,11 +128,10 @@ class GraspFix(Plugin):
 
     def _sample_on(self, touches: bool) -> None:
         """Start or stop the sampling of contacts between updates."""
-        if touches and self._rare and self._samples is None:
-            self._samples = self.context.every(_SAMPLE_HZ, self._sample)
-        elif not touches and self._samples is not None:
+        if touches and self._rare and not self._samples.is_active:
+            self._samples.set(self.context.every(_SAMPLE_HZ, self._sample))
+        elif not touches:
             self._samples.end()
-            self._samples = None
 
     def _sample(self) -> None:
         """Take the contacts of the last step, once."""

@@ -27,7 +27,8 @@ from ...geometry import (
     subtract,
 )
 from ..base import Plugin
-from ..context import CallHandle, PluginError
+from ..call_slot import CallSlot
+from ..context import PluginError
 from ..finite_messages import finite_only
 from ..parameters import Parameters
 
@@ -87,7 +88,7 @@ class Harness(Plugin):
         context.subscribe(f"{above}/velocity", "std_msgs/Float32",
                           finite_only(context, f"{above}/velocity", self._receive_rate))
         context.subscribe(f"{above}/detach", "std_msgs/Bool", self._receive_detach)
-        self._timer: Optional[CallHandle] = None   # while it hangs
+        self._timer = CallSlot()   # while it hangs
         self.reset()
 
     def _read_joint(self, joint: Parameters) -> None:
@@ -119,8 +120,8 @@ class Harness(Plugin):
     def reset(self) -> None:
         """Hang where the model is."""
         self._hangs = True
-        if self._timer is None:
-            self._timer = self.context.every(0.0, self.update)
+        if not self._timer.is_active:
+            self._timer.set(self.context.every(0.0, self.update))
         self._anchor: Pose = self._link.pose
         self._axis: Vec3 = rotate(self._anchor.orientation, self._axis_in_link)
         self._rate = self._place = 0.0
@@ -141,9 +142,7 @@ class Harness(Plugin):
     def _receive_detach(self, message: Any) -> None:
         if bool(message.data) and self._hangs:
             self._hangs = False
-            if self._timer is not None:
-                self._timer.end()
-                self._timer = None
+            self._timer.end()
             self.context.set_wrench(self._link.name, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
             self.context.info("the harness lets go")
 

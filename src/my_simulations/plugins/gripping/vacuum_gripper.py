@@ -6,11 +6,11 @@ relative pose; in gazebo_plugins a force pulls them to the link's origin.
 """
 from __future__ import annotations
 
-from typing import List, Optional, Tuple
+from typing import List, Tuple
 
 from ...geometry import norm, subtract
 from ..base import Plugin
-from ..context import CallHandle
+from ..call_slot import CallSlot
 
 _REACH = 0.05   # m, between the origins of the links
 _HERTZ = 100.0
@@ -28,7 +28,7 @@ class VacuumGripper(Plugin):
         self._topic = context.publish(topic, "std_msgs/Bool")
         context.serve("on", "std_srvs/Empty", lambda request, response: self._switch(True))
         context.serve("off", "std_srvs/Empty", lambda request, response: self._switch(False))
-        self._search: Optional[CallHandle] = None   # while it is on
+        self._search = CallSlot()   # while it is on
         context.observe(_HERTZ, self.publish, [self._topic])
 
     def reset(self) -> None:
@@ -39,16 +39,11 @@ class VacuumGripper(Plugin):
         if on == self._on:
             self.context.warn(f"it is {'on' if on else 'off'} already")
         self._on = on
-        if on and self._search is None:
-            self._search = self.context.every(_HERTZ, self._attach_touched)
+        if on and not self._search.is_active:
+            self._search.set(self.context.every(_HERTZ, self._attach_touched))
         elif not on:
-            self._end_search()
-            self._release_links()
-
-    def _end_search(self) -> None:
-        if self._search is not None:
             self._search.end()
-            self._search = None
+            self._release_links()
 
     def _release_links(self) -> None:
         for joint, _ in self._held:

@@ -11,7 +11,7 @@ from typing import Optional
 from ...engine.wrench_laws import PoseSpring
 from ...geometry import ZERO3, Pose, scale
 from ..base import Plugin
-from ..context import CallHandle
+from ..call_slot import CallSlot
 from ..transforms import Transforms
 
 
@@ -27,7 +27,7 @@ class HandOfGod(Plugin):
         self._damping = (2.0 * math.sqrt(self._stiffness[0] * inertial.mass),
                          2.0 * math.sqrt(self._stiffness[1] * inertial.ixx))
         self._wanted: Optional[Pose] = None
-        self._published: Optional[CallHandle] = None
+        self._publishing = CallSlot()
         self._transforms = Transforms(context, self._follow)
         self.update()
         context.on_world_change(self.update)
@@ -53,8 +53,8 @@ class HandOfGod(Plugin):
             return
         self._wanted = wanted
         self.update()
-        if self._published is None:
-            self._published = self.context.observe(0.0, self._publish, transforms=True)
+        if not self._publishing.is_active:
+            self._publishing.set(self.context.observe(0.0, self._publish, transforms=True))
 
     def _publish(self) -> None:
         if self._wanted is not None:

@@ -11,7 +11,8 @@ from typing import Any, List, Tuple
 
 from ...geometry import Pose, compose, inverse, normalised, pose_is_finite
 from ..base import Plugin
-from ..context import CallHandle, Joint, Link, PluginError
+from ..call_slot import CallSlot
+from ..context import Joint, Link, PluginError
 from ..finite_messages import is_all_finite
 
 _WORLD = ("world", "map")
@@ -26,7 +27,7 @@ class JointPoseTrajectory(Plugin):
         self._joints: List[Joint] = []
         self._points: List[Tuple[int, List[float]]] = []
         self._anchor: "Link | None" = None
-        self._next: "CallHandle | None" = None
+        self._next = CallSlot()
         self._held = False
         topic = p.text("topicName", "set_joint_trajectory")
         service = p.text("serviceName", "set_joint_trajectory")
@@ -101,7 +102,7 @@ class JointPoseTrajectory(Plugin):
     def _await(self) -> None:
         """Schedule the next point at its time; each step applies one, as in the original."""
         if self._points:
-            self._next = self.context.once(self._points[0][0], self._play)
+            self._next.set(self.context.once(self._points[0][0], self._play))
         else:
             self._end()
 
@@ -121,9 +122,7 @@ class JointPoseTrajectory(Plugin):
 
     def _end(self) -> None:
         self._points = []
-        if self._next is not None:
-            self._next.end()
-            self._next = None
+        self._next.end()
         if self._held:
             self._held = False
             self.context.hold(False)
