@@ -22,7 +22,7 @@ from ..context import PluginError
 from ..frames import stamp_message
 from ..noise import WhiteNoise
 from ..sensors.imu import Imu
-from ..sensors.rays import SampledNoise
+from ..sensors.noisy_plugin import NoisyPlugin
 from ..standard_messages import (
     diagonal_covariance,
     fix_message,
@@ -53,7 +53,7 @@ class RotorsImu(Imu):
                          p.number("accelerometerRandomWalk", 2.0 * 3.0e-3),
                          p.number("accelerometerBiasCorrelationTime", 300.0))
         who = self._link.name
-        self._errors = [SampledNoise(context, self._spec(*values), f"{who}/{kind}/{axis}")
+        self._errors = [self.add_noise(self._spec(*values), f"{who}/{kind}/{axis}")
                         for kind, values in (("rate", gyroscope), ("acceleration", accelerometer))
                         for axis in "xyz"]
         self._variances = [diagonal_covariance([values[0] ** 2] * 3)
@@ -67,13 +67,6 @@ class RotorsImu(Imu):
         return NoiseSpec(GAUSSIAN, stddev=density / math.sqrt(self.context.step_size),
                          bias_stddev=turn_on, dynamic_bias_stddev=walk,
                          dynamic_bias_correlation_time=time)
-
-    def reset(self) -> None:
-        for errors in self._errors:
-            errors.reset(self.context.now_ns)
-        super().reset()
-
-    clock_set = reset
 
     def update(self) -> None:
         context, sample = self.context, self.measured()
@@ -144,7 +137,7 @@ def air_pressure(height: float) -> float:
     return _SEA_LEVEL_PRESSURE * (temperature / _SEA_LEVEL_TEMPERATURE) ** _EXPONENT
 
 
-class RotorsGps(Plugin):
+class RotorsGps(NoisyPlugin):
     """sensor_msgs/NavSatFix and the velocity of a `<sensor type="gps">`."""
 
     def load(self) -> None:
@@ -154,7 +147,7 @@ class RotorsGps(Plugin):
         self._link, self._mount = context.link(context.sensor_link), context.sensor.pose
         self._frame = p.text("linkName", self._link.name)
         block = context.sensor.gps or GpsBlock()
-        self._place = [SampledNoise(context, noise, f"position/{axis}") for axis, noise in (
+        self._place = [self.add_noise(noise, f"position/{axis}") for axis, noise in (
             ("x", block.position_horizontal), ("y", block.position_horizontal),
             ("z", block.position_vertical))]
         level, up = p.number("horPosStdDev", 3.0), p.number("verPosStdDev", 6.0)
@@ -165,12 +158,6 @@ class RotorsGps(Plugin):
         self._speed = context.publish(p.text("groundSpeedTopic", "ground_speed"),
                                       "geometry_msgs/TwistStamped")
         context.observe(context.sensor.update_rate, self.update, [self._fix, self._speed])
-
-    def reset(self) -> None:
-        for noise in self._place:
-            noise.reset(self.context.now_ns)
-
-    clock_set = reset
 
     def update(self) -> None:
         context, link, ns = self.context, self._link, self.context.now_ns

@@ -7,21 +7,20 @@ sensor's `<update_rate>`. Parameters: `robotNamespace` (missing: the model's nam
 """
 from __future__ import annotations
 
-from typing import Any, List
+from typing import Any
 
-from ...description.sensor import Altimeter, Gps, Magnetometer, Noise
+from ...description.sensor import Altimeter, Gps, Magnetometer
 from ...description.surroundings import SphericalCoordinates
 from ...geometry import transform
 from ...sensing import gps
 from ...sensing.sensor_models import measure_altitude, measure_magnetic_field, velocity_at
-from ..base import Plugin
 from ..context import PluginError, Publication
 from ..frames import add_tf_prefix
 from ..standard_messages import fix_message, magnetic_message, point_message, vector_message
-from .rays import SampledNoise
+from .noisy_plugin import NoisyPlugin
 
 
-class _SensorPlugin(Plugin):
+class _SensorPlugin(NoisyPlugin):
     """Base class of the three sensors."""
 
     block: Any = None
@@ -33,24 +32,12 @@ class _SensorPlugin(Plugin):
         self._link, self._mount = context.link(context.sensor_link), context.sensor.pose
         self._frame = add_tf_prefix(context, p.text("frameName") or context.sensor_link)
         self.block = getattr(context.sensor, kind)
-        self._noises: List[SampledNoise] = []
 
     def _follow(self, *topics: Publication) -> None:
         """Measure at the sensor's rate while there are subscribers."""
         context = self.context
         assert context.sensor is not None
         context.observe(context.sensor.update_rate, self.update, topics)
-
-    def _noise(self, noise: Noise, quantity: str) -> SampledNoise:
-        made = SampledNoise(self.context, noise, quantity)
-        self._noises.append(made)
-        return made
-
-    def reset(self) -> None:
-        for noise in self._noises:
-            noise.reset(self.context.now_ns)
-
-    clock_set = reset
 
     def update(self) -> None:
         raise NotImplementedError
@@ -62,10 +49,10 @@ class GpsSensor(_SensorPlugin):
     def load(self) -> None:
         self._begin("gps")
         block, context = self.block or Gps(), self.context
-        self._place = [self._noise(one, f"position/{axis}") for one, axis in (
+        self._place = [self.add_noise(one, f"position/{axis}") for one, axis in (
             (block.position_horizontal, "x"), (block.position_horizontal, "y"),
             (block.position_vertical, "z"))]
-        self._speed = [self._noise(one, f"velocity/{axis}") for one, axis in (
+        self._speed = [self.add_noise(one, f"velocity/{axis}") for one, axis in (
             (block.velocity_horizontal, "east"), (block.velocity_horizontal, "north"),
             (block.velocity_vertical, "up"))]
         level, up = block.position_horizontal.stddev ** 2, block.position_vertical.stddev ** 2
@@ -96,7 +83,7 @@ class MagnetometerSensor(_SensorPlugin):
     def load(self) -> None:
         self._begin("magnetometer")
         block, context = self.block or Magnetometer(), self.context
-        self._axes = [self._noise(getattr(block, axis), axis) for axis in "xyz"]
+        self._axes = [self.add_noise(getattr(block, axis), axis) for axis in "xyz"]
         self._variances = [getattr(block, axis).stddev ** 2 for axis in "xyz"]
         self._topic = context.publish(context.parameters.text("topicName") or "magnetic_field",
                                       "sensor_msgs/MagneticField")
@@ -115,8 +102,8 @@ class AltimeterSensor(_SensorPlugin):
     def load(self) -> None:
         self._begin("altimeter")
         block, context = self.block or Altimeter(), self.context
-        self._up = self._noise(block.vertical_position, "vertical_position")
-        self._upwards = self._noise(block.vertical_velocity, "vertical_velocity")
+        self._up = self.add_noise(block.vertical_position, "vertical_position")
+        self._upwards = self.add_noise(block.vertical_velocity, "vertical_velocity")
         self._reference = transform(self._link.pose, self._mount.position)[2]
         name = context.parameters.text("topicName") or "altitude"
         self._height = context.publish(name, "geometry_msgs/PointStamped")

@@ -6,11 +6,10 @@ reference heading is 0. dynamic_reconfigure and services of hector's own types a
 from __future__ import annotations
 
 import math
-from typing import Any, List, Optional, Tuple
+from typing import Any, Optional, Tuple
 
 from ...description.surroundings import SphericalCoordinates
 from ...geometry import Vec3, conjugate, rotate
-from ..base import Plugin
 from ..context import Link, PluginError, Publication
 from ..frames import stamp_message
 from ..standard_messages import (
@@ -22,6 +21,7 @@ from ..standard_messages import (
     vector_message,
 )
 from .hector_errors import SensorErrors, rate_of
+from .noisy_plugin import NoisyPlugin
 from .rays import RayPlugin
 
 _EQUATOR = 6378137.0            # WGS 84, m
@@ -30,28 +30,21 @@ _SONAR_HERTZ = 10.0             # where it has no rate of its own, whatever its 
 _SCALE_HEIGHT, _EXPONENT = 44330.0, 5.263157  # of the standard atmosphere
 
 
-class _LinkSensor(Plugin):
+class _LinkSensor(NoisyPlugin):
     """On the link `<bodyName>`, or the model's own."""
 
     _link: Link
 
     def _begin(self, frame: str = "") -> None:
         context, p = self.enter_namespace()
-        self._all_errors: List[SensorErrors] = []
         self._link = context.link(p.text("bodyName"))
         self._frame = (p.text("frameId") or frame or self._link.name).lstrip("/")
 
     def _with_errors(self, prefix: str = "", width: int = 3) -> SensorErrors:
         """Return the errors of a quantity; `reset` resets them."""
         made = SensorErrors(self.context, prefix, width)
-        self._all_errors.append(made)
+        self._noises.append(made)
         return made
-
-    def reset(self) -> None:
-        for errors in self._all_errors:
-            errors.reset(self.context.now_ns)
-
-    clock_set = reset
 
     def _place(self) -> Optional[SphericalCoordinates]:
         """Return the world's coordinates, if they are used; the default is 0, 0 as in Gazebo."""
@@ -92,8 +85,6 @@ class Gps(_LinkSensor):
     def reset(self) -> None:
         super().reset()
         self._last_ns = self.context.now_ns
-
-    clock_set = reset
 
     def _north_west(self, x: float, y: float) -> Tuple[float, float]:
         c, s = math.cos(self._turned), math.sin(self._turned)
@@ -203,13 +194,9 @@ class Sonar(RayPlugin):
         wide = [abs(one.max_angle - one.min_angle) for one in (flat, high)]
         self._view = min((angle for angle in wide if angle > 0.0), default=0.0)
         self._errors = SensorErrors(context, width=1)
+        self._noises = [self._errors]
         self._topic = context.publish(p.text("topicName") or "sonar", "sensor_msgs/Range")
         self.follow(rate_of(p, _SONAR_HERTZ))
-
-    def reset(self) -> None:
-        self._errors.reset(self.context.now_ns)
-
-    clock_set = reset
 
     def _publish(self, returns: Any, ns: int) -> None:
         least, most = self._ray.min_range, self._ray.max_range

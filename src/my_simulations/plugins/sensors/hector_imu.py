@@ -25,6 +25,7 @@ class HectorImu(Imu):
         topic = p.text("topicName") or "imu"
         self._accel, self._rate = SensorErrors(context, "accel"), SensorErrors(context, "rate")
         self._yaw = SensorErrors(context, "yaw", 1)
+        self._noises = [self._accel, self._rate, self._yaw]
         both = p.number("gaussianNoise", 0.0)
         if both:
             self._accel.noise, self._rate.noise = [both] * 3, [both] * 3
@@ -36,14 +37,6 @@ class HectorImu(Imu):
         self.begin_motion()
         context.observe(rate_of(p), self.update, [self._topic, self._bias],
                         resume=self.begin_motion)
-
-    def reset(self) -> None:
-        """Reset the errors, and compute accelerations from the present velocity on."""
-        for errors in (self._accel, self._rate, self._yaw):
-            errors.reset(self.context.now_ns)
-        self.begin_motion()
-
-    clock_set = reset
 
     def update(self) -> None:
         """Measure, and publish on the topics that have a subscriber."""

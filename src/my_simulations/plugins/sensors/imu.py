@@ -11,15 +11,14 @@ from typing import Any, Optional
 from ...description.sensor import Imu as ImuBlock
 from ...geometry import IDENTITY, IDENTITY_QUAT, Pose, Quat, Vec3, compose, multiply
 from ...sensing.sensor_models import ImuSample, acceleration_between, measure_motion, velocity_at
-from ..base import Plugin
 from ..context import Link, PluginError
 from ..noise import WhiteNoise
 from ..parameters import lowest_rate
 from ..standard_messages import diagonal_covariance, imu_message
-from .rays import SampledNoise
+from .noisy_plugin import NoisyPlugin
 
 
-class Imu(Plugin):
+class Imu(NoisyPlugin):
     """What both have: a link, a place on it, and the velocity at the sample before."""
 
     _link: Link
@@ -42,10 +41,9 @@ class Imu(Plugin):
         self._before = self._velocity()
 
     def reset(self) -> None:
-        """Measure accelerations from the present time and velocity on."""
+        """Restart noises; measure accelerations from the present time and velocity on."""
+        super().reset()
         self.begin_motion()
-
-    clock_set = reset
 
     def follow(self, hertz: float) -> None:
         """Measure at a rate while there are subscribers.
@@ -115,8 +113,7 @@ class SensorImu(Imu):
         if p.flag("initialOrientationAsReference", False):
             self._reference = compose(self._link.pose, self._mount).orientation
         self._block: Optional[ImuBlock] = context.sensor.imu
-        self._axes = [SampledNoise(context, getattr(getattr(self._block, kind), axis),
-                                   f"{kind}/{axis}")
+        self._axes = [self.add_noise(getattr(getattr(self._block, kind), axis), f"{kind}/{axis}")
                       for kind in ("angular_velocity", "linear_acceleration") for axis in "xyz"
                       ] if self._block is not None else []
         self._begin(p.text("topicName", "imu_data"), frame, context.sensor.name)
@@ -126,14 +123,6 @@ class SensorImu(Imu):
         self.follow(hertz)
         if 0.0 < hertz * period < 1.0 - 1e-9:
             context.observe(hertz, self.begin_motion, [self._topic], lead=period)
-
-    def reset(self) -> None:
-        """Reset the biases as well."""
-        for noise in self._axes:
-            noise.reset(self.context.now_ns)
-        super().reset()
-
-    clock_set = reset
 
     def _noisy(self, sample: ImuSample) -> ImuSample:
         if not self._axes:

@@ -16,7 +16,7 @@ from ...description.sensor import Noise as NoiseSpec
 from ...sensing.noise import GAUSSIAN, Noise
 from ..frames import add_tf_prefix, resolve_frame, stamp_message
 from .image_messages import FLOAT32, UINT16, header, point_field
-from .rays import RayPlugin, SampledNoise
+from .rays import RayPlugin
 
 _STEP = 22       # bytes of a Velodyne's point, as PointXYZIRT of its drivers
 _FURTHEST = float("inf")
@@ -31,7 +31,7 @@ class Points(RayPlugin):
     def load(self) -> None:
         context, p = self.enter_namespace()
         self.read_ray_element()
-        self._range_noise = SampledNoise(context, self._ray.noise, "range")
+        self._range_noise = self.add_noise(self._ray.noise, "range")
         self._noise = Noise(NoiseSpec(GAUSSIAN, stddev=p.number("gaussianNoise", 0.0)),
                             context.seed, f"{context.model}::{context.sensor_link}::points")
         self._frame = self._resolve_frame(p.text("frameName", "/world"))
@@ -42,11 +42,6 @@ class Points(RayPlugin):
 
     def _resolve_frame(self, frame: str) -> str:
         return add_tf_prefix(self.context, frame)
-
-    def reset(self) -> None:
-        self._range_noise.reset(self.context.now_ns)
-
-    clock_set = reset
 
     def _publish(self, returns: Any, ns: int) -> None:
         import numpy as np
@@ -167,15 +162,10 @@ class Laser(RayPlugin):
         context, p = self.enter_namespace(empty_means_model=True)
         self.read_ray_element()
         self._frame = add_tf_prefix(context, p.text("frameName", "/world"))
-        self._noise = SampledNoise(context, self._ray.noise, "range")
+        self._noise = self.add_noise(self._ray.noise, "range")
         self._topic = context.publish(p.text("topicName", "/world"), "sensor_msgs/LaserScan")
         assert context.sensor is not None
         self.follow(context.sensor.update_rate)
-
-    def reset(self) -> None:
-        self._noise.reset(self.context.now_ns)
-
-    clock_set = reset
 
     def _publish(self, returns: Any, ns: int) -> None:
         import numpy as np

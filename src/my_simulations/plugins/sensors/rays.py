@@ -1,13 +1,12 @@
-"""What range sensors share: the fan of a `<ray>` and the noise of its ranges."""
+"""What range sensors share: the rays of a `<ray>`."""
 from __future__ import annotations
 
-from typing import Any, Tuple
+from typing import Tuple
 
-from ...description.sensor import Noise, Ray, ScanAngles
+from ...description.sensor import Ray, ScanAngles
 from ...sensing.api import RayFan, RayReturns
-from ...sensing.noise import Noise as SensorNoise
-from ..base import Plugin
 from ..context import Context, PluginError, Publication
+from .noisy_plugin import NoisyPlugin
 
 _NO_END = 1e6  # m: a sensor without a maximum range
 
@@ -36,7 +35,7 @@ def ray_of(context: Context) -> Tuple[Ray, bool]:
     return sensor.ray, sensor.type in ("gpu_ray", "gpu_lidar")
 
 
-class RayPlugin(Plugin):
+class RayPlugin(NoisyPlugin):
     """Base class of plugins in a `<ray>` sensor: they cast rays while there are subscribers."""
 
     _topic: Publication
@@ -55,26 +54,3 @@ class RayPlugin(Plugin):
 
     def _publish(self, returns: RayReturns, ns: int) -> None:
         raise NotImplementedError
-
-
-class SampledNoise:
-    """SDF's noise, sample by sample."""
-
-    def __init__(self, context: Context, noise: Noise, quantity: str) -> None:
-        name = f"{context.model}::{context.sensor_link}::" + (
-            context.sensor.name if context.sensor is not None else "")
-        self._noise = SensorNoise(noise, context.seed, name, quantity)
-        self._last_ns = context.now_ns
-
-    def apply(self, values: Any, ns: int) -> Any:
-        """Values of the sample taken at a sim time, with their noise.
-
-        Random draws depend on the sim time: skipped samples do not change those of others.
-        """
-        elapsed, self._last_ns = (ns - self._last_ns) * 1e-9, ns
-        return self._noise.apply(values, ns, max(0.0, elapsed))
-
-    def reset(self, ns: int) -> None:
-        """Restart the noise at a sim time."""
-        self._noise.reset()
-        self._last_ns = ns

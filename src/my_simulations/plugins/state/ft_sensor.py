@@ -11,15 +11,14 @@ from typing import Optional
 from ...description.model import WORLD, Joint
 from ...description.sensor import ForceTorque
 from ...sensing.sensor_models import measure_wrench
-from ..base import Plugin
 from ..context import PluginError
 from ..frames import add_tf_prefix
 from ..noise import WhiteNoise
-from ..sensors.rays import SampledNoise
+from ..sensors.noisy_plugin import NoisyPlugin
 from ..standard_messages import wrench_message
 
 
-class FtSensor(Plugin):
+class FtSensor(NoisyPlugin):
     """Publishes while there are subscribers."""
 
     def load(self) -> None:
@@ -32,8 +31,7 @@ class FtSensor(Plugin):
         self._joint = self._described()
         self._white = WhiteNoise(context.seed, f"{context.model}::{self._name}::ft",
                                  p.number("gaussianNoise", 0.0))
-        self._noise = [SampledNoise(context, getattr(getattr(self._block, kind), axis),
-                                    f"{kind}/{axis}")
+        self._noise = [self.add_noise(getattr(getattr(self._block, kind), axis), f"{kind}/{axis}")
                        for kind in ("force", "torque") for axis in "xyz"
                        ] if self._block is not None else []
         self._frame = add_tf_prefix(context, self._frame_name())
@@ -58,12 +56,6 @@ class FtSensor(Plugin):
         if block is not None and block.frame == "sensor" and self.context.sensor is not None:
             return self.context.sensor.name
         return joint.child
-
-    def reset(self) -> None:
-        for noise in self._noise:
-            noise.reset(self.context.now_ns)
-
-    clock_set = reset
 
     def update(self) -> None:
         """Publish what was transmitted in the last step."""
