@@ -128,7 +128,7 @@ class ActionServer:
         goal = Goal(self, goal_id, message.goal)
         self._goals.append(goal)
         if any(_applies_to(one, goal) for one, _ in self._early):
-            goal.cancel(self.result(), "cancelled before it came")
+            goal.cancel(self.result(), "cancelled before it arrived")
             return
         self._asked(goal)
 

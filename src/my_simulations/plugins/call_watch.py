@@ -59,8 +59,8 @@ class _Call:
     """A call that is under way.
 
     Attributes:
-        looked: whether it was checked. Its times count from the first check on, so that the many
-            calls that return before it cost nothing.
+        is_checked: its times count from the first check on, so that the many calls that return
+            before it cost nothing.
         interrupted: monotonic time; 0 before.
         abandoned: another thread has taken over.
     """
@@ -68,7 +68,7 @@ class _Call:
     def __init__(self, subject: Any, limits: CallLimits) -> None:
         self.subject, self.limits = subject, limits
         self.thread = threading.get_ident()
-        self.looked = False
+        self.is_checked = False
         self.interrupted = 0.0
         self.abandoned = False
         self.where = ""
@@ -79,8 +79,8 @@ class _Call:
 
     def overdue(self) -> str:
         """Why the call has taken too long; "" when it has not. For calls that are under way."""
-        if not self.looked:
-            self.looked = True
+        if not self.is_checked:
+            self.is_checked = True
             self._clock = time.pthread_getcpuclockid(self.thread)
             self._computed, self._begun = self._read_processor_time(), time.monotonic()
         used = self._read_processor_time() - self._computed
@@ -149,12 +149,12 @@ class CallWatch:
         call()
         with self._lock:
             if waiting is not None:
-                waiting.looked = False   # the time that `call` has taken does not count
+                waiting.is_checked = False   # the time that `call` has taken does not count
             self._call = waiting
 
     def _finish(self, mine: _Call) -> None:
         """End the watch of a call that has returned. Raises ThreadAbandoned."""
-        if not mine.looked:  # a check comes long before an interruption: most calls need no lock
+        if not mine.is_checked:  # a check precedes any interruption: most calls need no lock
             if self._call is mine:
                 self._call = None
             return

@@ -1,4 +1,4 @@
-"""Starts the plugins' host when the first model with a plugin is there, and not before."""
+"""Starts the plugins' host with the first model that has a plugin."""
 from __future__ import annotations
 
 import threading
@@ -75,7 +75,7 @@ class HostStarter:
         return self._host
 
     def start_early(self) -> None:
-        """Start the host, before the first model with plugins comes (`SyncPoints.on_plugins`)."""
+        """Start the host before the first model with plugins is added (`SyncPoints.on_plugins`)."""
         with self._lock:
             if not self._ended:
                 self._begin_host()

@@ -183,7 +183,7 @@ class LocalGraph:
     def listen(self, name: str, call: Listener) -> Callable[[], None]:
         """Call a function with the messages of a topic; returns what ends it.
 
-        The last message of a latched topic comes at once.
+        The function receives the last message of a latched topic at once.
         """
         return self._listen(name, call, plugin=False)
 

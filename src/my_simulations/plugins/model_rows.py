@@ -46,7 +46,7 @@ class ModelRows:
         return known[full]
 
     def _full(self, name: str, known: Container[str]) -> Optional[str]:
-        """The name of a link or joint as the model knows it."""
+        """Return the name of a link or joint in the model; None for an unknown one."""
         if self._scope + name in known:
             return self._scope + name
         if name in known:

@@ -13,7 +13,7 @@ class WhiteNoise:
 
     Args:
         seed: of the world.
-        who: names the plugin; another one draws other numbers.
+        who: identifies the plugin; each one draws different numbers.
         stddev: in the unit of what is measured; 0 draws zeros.
     """
 

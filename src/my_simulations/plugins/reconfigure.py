@@ -21,7 +21,7 @@ class Reconfigure:
         name: what `dynparam` lists, below the plugin's namespace.
         options: what can be changed.
         values: what holds now, by name.
-        changed: gets all values once some were set; what it raises goes to who has asked.
+        changed: receives all values after some were set; its exceptions answer the request.
     """
 
     def __init__(self, context: Context, name: str, options: Sequence[Option],

@@ -1,4 +1,4 @@
-"""Which class stands for which library of Gazebo.
+"""The classes that replace libraries of Gazebo.
 
 Other packages add theirs by an export in their package.xml,
 

@@ -61,7 +61,7 @@ class SensingRequests:
         self._stream = ""
         self._fault = ""
         self._left_out = 0
-        self._told = -_AGAIN_S
+        self._last_warning = -_AGAIN_S
 
     def discard_pending(self) -> None:
         """Discard pending scans and pictures after sim time was set."""
@@ -93,9 +93,9 @@ class SensingRequests:
         """
         self._end_scan(self._scan)
         scan = self._scan = _Scan(self._scene.cast(mount, fan, visuals, ns, rows), call, ns)
-        scan.future.add_done_callback(lambda _: self._receive(lambda: self._end_scan(scan)))
+        scan.future.add_done_callback(lambda _: self._queue_call(lambda: self._end_scan(scan)))
 
-    def _receive(self, call: Callable[[], None]) -> None:
+    def _queue_call(self, call: Callable[[], None]) -> None:
         self._inbox.append(call)
         self._wake()
 
@@ -157,7 +157,7 @@ class SensingRequests:
                 again()
 
         for future in shot.futures:
-            future.add_done_callback(lambda _: self._receive(arrived))
+            future.add_done_callback(lambda _: self._queue_call(arrived))
         return True
 
     def _end_request(self, shot: _PictureRequest, timeout: float = 0.0) -> bool:
@@ -182,8 +182,8 @@ class SensingRequests:
     def _report_skipped(self, sensor: str) -> None:
         self._left_out += 1
         now = time.monotonic()
-        if now - self._told >= _AGAIN_S:
-            self._told = now
+        if now - self._last_warning >= _AGAIN_S:
+            self._last_warning = now
             self._warn(f"pictures of sensor '{sensor}' are late, this machine draws slower than "
                        f"the sensor's rate: {self._left_out} left out so far; physics continues")
 

@@ -74,7 +74,7 @@ class GraphUser:
 
     Args:
         graph: ROS.
-        wake: has the host look at `inbox`.
+        wake: causes the host to process `inbox`.
         changed: called, in any thread, when subscribers of a topic come or go.
     """
 

@@ -125,7 +125,7 @@ class BaseController(Controller):
         self._odom = self.publish("odom", "nav_msgs/Odometry", 100)
         self._limited = self.publish("cmd_vel_out", "geometry_msgs/TwistStamped", 100) \
             if s.flag("publish_cmd", False) else None
-        self.command, self._told_of_numbers = STANDING, False
+        self.command, self._reported_nonfinite = STANDING, False
         self.subscribe("cmd_vel", "geometry_msgs/Twist", self._receive, checks=True)
         self._pose: Planar = STANDING
 
@@ -172,8 +172,8 @@ class BaseController(Controller):
             self._time_out.begin()
             self._expiry.set(self._change.begin_after(self.context.now_ns + self._time_out.ns))
             self._change.begin()
-        elif not self._told_of_numbers:
-            self._told_of_numbers = True
+        elif not self._reported_nonfinite:
+            self._reported_nonfinite = True
             self.context.warn(f"controller '{self.name}' ignores commands that are not finite")
         return finite
 

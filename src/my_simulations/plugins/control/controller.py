@@ -16,8 +16,7 @@ class Controller:
     """A controller of some joints of one robot.
 
     `load` reads parameters and takes joints; `start` and `stop` are called when it is switched;
-    what it begins with `every` while running ends with it. Raise PluginError for what the user
-    did wrong.
+    calls that it schedules while running end with it. Raise PluginError for errors of the user.
 
     Attributes:
         name: below the namespace of the robot; topics and parameters are below it.
@@ -77,7 +76,7 @@ class Controller:
         if not checks:
             call = finite_only(self.context, f"{self.name}/{topic}", call)
 
-        def heard(message: Any) -> None:
+        def receive(message: Any) -> None:
             if self.state == RUNNING:
                 call(message)
             elif self._told != topic:
@@ -85,24 +84,24 @@ class Controller:
                 self.context.warn(f"controller '{self.name}' is not running, and ignores messages"
                                   f" on {topic}")
 
-        self._handles.append(self.context.subscribe(f"{self.name}/{topic}", kind, heard))
+        self._handles.append(self.context.subscribe(f"{self.name}/{topic}", kind, receive))
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> None:
         """Advertise a service below the controller's name."""
         self._handles.append(self.context.serve(f"{self.name}/{name}", kind, call))
 
-    def keep(self, handle: Handle) -> None:
+    def keep_handle(self, handle: Handle) -> None:
         """Store a handle to close when the controller is unloaded."""
         self._handles.append(handle)
 
     def offer_gains(self, path: str, joint: HardwareJoint, gains: PidGains,
                     changed: Callable[[PidGains], None] = lambda gains: None) -> None:
         """Let dynamic_reconfigure change gains below its name while a joint follows with them."""
-        def take(wanted: PidGains) -> None:
+        def apply(wanted: PidGains) -> None:
             changed(wanted)
             joint.retune(wanted)
 
-        self.keep(offer_gains(self.context, f"{self.name}/{path}", gains, take))
+        self.keep_handle(offer_gains(self.context, f"{self.name}/{path}", gains, apply))
 
     def every(self, hertz: float, call: Callable[[], None]) -> None:
         """Call a function at a rate in Hz of sim time while the controller runs."""

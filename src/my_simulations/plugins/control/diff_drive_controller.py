@@ -27,7 +27,7 @@ class DiffDriveController(BaseController):
     def load(self) -> None:
         super().load()
         values: Dict[str, Value] = dict(zip(_MULTIPLIERS, self._multipliers))
-        self.keep(Reconfigure(self.context, self.name, _OPTIONS, {
+        self.keep_handle(Reconfigure(self.context, self.name, _OPTIONS, {
             **values, "publish_rate": self.publish_hz, "enable_odom_tf": self.broadcasts},
             self._reconfigure))
 

@@ -104,7 +104,7 @@ class FetchBase(DiffDriveController, FetchController):
         if topic != "odom":
             return super().publish(topic, kind, queue, latch)
         made = self.context.publish(topic, kind, queue, latch)
-        self.keep(made)
+        self.keep_handle(made)
         return made
 
     def subscribe(self, topic: str, kind: str, call: Callable[[Any], None],
@@ -124,7 +124,7 @@ class ActionController(FetchController):
         self.watch = StepwiseChange(self.context, _LOOK_HZ, self._look)
         self.action = ActionServer(self.context, self.name, self.kind, self._start_goal,
                                    self._on_cancel)
-        self.keep(self.action)
+        self.keep_handle(self.action)
 
     def follow(self, goal: Goal) -> str:
         """Follow a goal of the running controller; return why that is impossible, or ""."""

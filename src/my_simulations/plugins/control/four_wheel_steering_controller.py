@@ -103,7 +103,7 @@ class FourWheelSteeringController(BaseController):
             self._odom_steer = self.publish("odom_steer", f"{_MESSAGES}/FourWheelSteeringStamped",
                                             100)
         except PluginError as missing:
-            self.context.warn(f"controller '{self.name}' hears cmd_vel only: {missing}")
+            self.context.warn(f"controller '{self.name}' subscribes to cmd_vel only: {missing}")
 
     def _pairs(self, interface: str, *axles: str) -> List[HardwareJoint]:
         found: List[HardwareJoint] = []
@@ -171,11 +171,11 @@ class FourWheelSteeringController(BaseController):
         ways = [turn * self._radius for turn in self.count_rotations()]
         angles = [steer.position for steer in self._steers]
         found = fitted_motion(self._corners, list(zip(angles, ways)))
-        self._note(math.copysign(math.hypot(*found[:2]), found[0]) / dt, angles, dt)
+        self._record_axle_states(math.copysign(math.hypot(*found[:2]), found[0]) / dt, angles, dt)
         return found
 
-    def _note(self, speed: float, angles: List[float], dt: float) -> None:
-        """Differences of speed and angles, for `odom_steer`."""
+    def _record_axle_states(self, speed: float, angles: List[float], dt: float) -> None:
+        """Store the speed and axle angles, and their derivatives, for `odom_steer`."""
         state = (speed, _axle(angles[0], angles[1]), _axle(angles[2], angles[3]))
         changes = [(now - then) / dt for now, then in zip(state, self._state)]
         jerk = (changes[0] - self._changes[-1][0]) / dt if self._changes else 0.0

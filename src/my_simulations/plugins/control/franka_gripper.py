@@ -109,7 +109,7 @@ class FrankaGripper(Controller):
             return made
 
         action = ActionServer(self.context, f"{self.name}/{name}", kind, received, self._cancel)
-        self.keep(action)
+        self.keep_handle(action)
 
     def start(self) -> None:
         """Hold the fingers."""

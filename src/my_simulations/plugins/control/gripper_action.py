@@ -36,7 +36,7 @@ class Gripper(Controller):
         self._action = ActionServer(self.context, f"{self.name}/gripper_cmd",
                                     "control_msgs/GripperCommand", self._start_goal,
                                     self._on_cancel)
-        self.keep(self._action)
+        self.keep_handle(self._action)
 
     def _set_gains(self, gains: PidGains) -> None:
         self._gains = gains

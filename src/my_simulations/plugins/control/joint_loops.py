@@ -11,7 +11,7 @@ from .controller import Controller
 from .forward import ForwardGroupController
 from .hardware import HardwareJoint
 
-_STATE_HZ = 100.0   # of sim time: the originals tell each tenth update, at 1 kHz
+_STATE_HZ = 100.0   # of sim time: the originals publish each tenth update, at 1 kHz
 
 
 class JointLoop(Controller):

@@ -33,7 +33,7 @@ class JointStateController(Controller):
         self._rate = self.settings.number("publish_rate")
         self._extra = self._extras(names)
         self._topic = self.context.publish("joint_states", "sensor_msgs/JointState", 4)
-        self.keep(self._topic)
+        self.keep_handle(self._topic)
 
     def start(self) -> None:
         if self._rate > 0.0:
@@ -73,7 +73,7 @@ class JointReadCommandController(Controller):
     def load(self) -> None:
         self._rate = self.settings.number("publish_rate", 0.0)
         self._topic = self.context.publish("joint_commands", "sensor_msgs/JointState", 4)
-        self.keep(self._topic)
+        self.keep_handle(self._topic)
 
     def start(self) -> None:
         self.observe(self._rate if self._rate > 0.0 else _UPDATE_HZ, self._publish_states,

@@ -1,7 +1,7 @@
 """joint_trajectory_controller: trajectories by topic and action; the engine follows the splines.
 
 Parameters, topics, rules of joining and tolerances are those of ros_controllers. Tolerances are
-looked at 100 times a second of sim time, or as often as `controlPeriod` says.
+checked 100 times a second of sim time, or as often as `controlPeriod` says.
 """
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class JointTrajectory(Controller):
         self._state = self.publish("state", "control_msgs/JointTrajectoryControllerState")
         self._action = ActionServer(self.context, self.action_name, _ACTION, self._start_goal,
                                     self._on_cancel)
-        self.keep(self._action)
+        self.keep_handle(self._action)
         self.serve("query_state", "control_msgs/QueryTrajectoryState", self._query)
 
     def start(self) -> None:

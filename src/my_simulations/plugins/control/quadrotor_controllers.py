@@ -28,7 +28,7 @@ _GRAVITY = 9.8065   # m/s^2, of the controllers
 _POSITION, _VELOCITY, _ATTITUDE = range(3)   # places in the chain
 
 
-class _OfQuadrotor(Controller):
+class _QuadrotorController(Controller):
     """What the three have in common."""
 
     place = _POSITION
@@ -53,7 +53,7 @@ class _OfQuadrotor(Controller):
     def listen(self, topic: str, kind: str, call: Any) -> None:
         """Subscribe to a topic of the robot; a message counts while the controller runs."""
         checked = finite_only(self.context, topic, call)
-        self.keep(self.context.subscribe(
+        self.keep_handle(self.context.subscribe(
             topic, kind, lambda message: checked(message) if self.state == RUNNING else None))
 
     def stamp_of(self, message: Any) -> int:
@@ -84,7 +84,7 @@ class _OfQuadrotor(Controller):
         raise NotImplementedError
 
 
-class PositionController(_OfQuadrotor):
+class PositionController(_QuadrotorController):
     """Computes a velocity in the world frame from the pose on `command/pose`."""
 
     place = _POSITION
@@ -151,7 +151,7 @@ def limit_velocity(command: TwistCommand, most: TwistCommand) -> TwistCommand:
     return command._replace(linear=(x, y, z), yaw_rate=yaw_rate)
 
 
-class VelocityController(_OfQuadrotor):
+class VelocityController(_QuadrotorController):
     """Computes attitude and thrust from `cmd_vel`, `command/twist` or the position controller."""
 
     place = _VELOCITY
@@ -175,7 +175,7 @@ class VelocityController(_OfQuadrotor):
         super().stop()
 
     def _receive(self, message: Any) -> None:
-        self._take(message, self.context.now_ns, False)
+        self._set_command(message, self.context.now_ns, False)
 
     def _receive_stamped(self, message: Any) -> None:
         frame = self.frame_of(message)
@@ -183,9 +183,9 @@ class VelocityController(_OfQuadrotor):
             self.context.warn(f"velocities must be given in the frame {self._stabilized} or"
                               f" {self._world}; one in '{message.header.frame_id}' is ignored")
             return
-        self._take(message.twist, self.stamp_of(message), frame == self._world)
+        self._set_command(message.twist, self.stamp_of(message), frame == self._world)
 
-    def _take(self, twist: Any, stamp_ns: int, in_world: bool) -> None:
+    def _set_command(self, twist: Any, stamp_ns: int, in_world: bool) -> None:
         linear = (twist.linear.x, twist.linear.y, twist.linear.z)
         self._command = TwistCommand(linear, twist.angular.z, stamp_ns, in_world)
         if any((*linear, twist.angular.x, twist.angular.y, twist.angular.z)):
@@ -218,7 +218,7 @@ class VelocityController(_OfQuadrotor):
         return 1.0 / upright if upright != 0.0 else 1.0
 
 
-class AttitudeController(_OfQuadrotor):
+class AttitudeController(_QuadrotorController):
     """From `command/attitude`, `command/yawrate`, `command/thrust` or a velocity controller to a
     wrench.
 

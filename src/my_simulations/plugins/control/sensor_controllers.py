@@ -37,7 +37,7 @@ class _SensorController(Controller):
 
     def _offer(self, name: str, kind: str) -> Publication:
         topic = self.context.publish(name, kind, _HANDLES)
-        self.keep(topic)
+        self.keep_handle(topic)
         return topic
 
 

@@ -102,11 +102,11 @@ _OPTIONS = (
 def offer_gains(context: Context, name: str, gains: PidGains,
             changed: Callable[[PidGains], None]) -> Reconfigure:
     """Let dynamic_reconfigure change gains below a name; `changed` receives the new gains."""
-    def take(values: Dict[str, Value]) -> None:
+    def apply(values: Dict[str, Value]) -> None:
         changed(PidGains(float(values["p"]), float(values["i"]), float(values["d"]),
                          float(values["i_clamp_min"]), float(values["i_clamp_max"]),
                          bool(values["antiwindup"])))
 
     return Reconfigure(context, name, _OPTIONS, {
         "p": gains.p, "i": gains.i, "d": gains.d, "i_clamp_min": gains.i_min,
-        "i_clamp_max": gains.i_max, "antiwindup": gains.antiwindup}, take)
+        "i_clamp_max": gains.i_max, "antiwindup": gains.antiwindup}, apply)

@@ -2,8 +2,8 @@
 
 Parameters are those of steer_drive_ros, below `steer_bot_hardware_gazebo`: the joint `rear_wheel`
 stands for `virtual_rear_wheels` and `virtual_front_wheels`, which all turn at its rate, the joint
-`front_steer` for `virtual_front_steers`. Where it differs: the places of the steering axes tell
-left from right (original: their order); with `enable_ackermann_link` the wheels are steered by the
+`front_steer` for `virtual_front_steers`. Where it differs: the places of the steering axes decide
+left and right (original: their order); with `enable_ackermann_link` the wheels are steered by the
 geometry of Ackermann, tan(angle) = h tan(a) / (h +- w/2 tan(a)), else both by the commanded angle
 (the original steers them by half of the difference, and without the link the left one by twice the
 angle); `gains` are not used, motors without limits of effort and rate turn the joints.

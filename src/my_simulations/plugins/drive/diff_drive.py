@@ -62,7 +62,7 @@ class DiffDrive(OdometryDrive):
         for n in (0, 1):
             before = self._instructed[n]
             after = before + max(-most, min(most, wanted[n] - present[n]))
-            # Not past what is wanted: a wheel that is held or driven by others winds nothing up.
+            # Clamp to the command, so that a blocked wheel causes no wind-up.
             self._instructed[n] = min(max(after, min(before, wanted[n])), max(before, wanted[n]))
         return self._instructed[0], self._instructed[1]
 

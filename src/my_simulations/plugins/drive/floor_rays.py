@@ -17,7 +17,7 @@ class FloorRays:
     Args:
         context: of the plugin.
         sensors: the link and the sensor, by a name.
-        answered: receives the distance of each ray by name, m; infinite if it met nothing.
+        answered: receives the distance of each ray by name, m; infinite without a hit.
     """
 
     def __init__(self, context: Context, sensors: Mapping[str, Tuple[str, Sensor]],
@@ -29,11 +29,11 @@ class FloorRays:
                 raise PluginError(f"sensor '{sensor.name}' has no <ray>")
 
     def clock_set(self) -> None:
-        """What was asked belongs to another time."""
+        """Discard pending rays after sim time was set."""
         self._next_cast_ns = 0
 
     def cast(self) -> None:
-        """Cast the rays again, once those before have been answered."""
+        """Cast the rays, unless earlier ones are pending."""
         now = self._context.now_ns
         if now >= self._next_cast_ns:
             self._next_cast_ns = now + _PATIENCE_NS

@@ -29,7 +29,7 @@ _READING, _READING_AT = 76123.0, 0.995          # of GazeboRosKobuki::updateClif
 
 
 class Kobuki(VelocityDrive):
-    """Two driven wheels and what the base senses."""
+    """Two driven wheels, odometry, an IMU and the events of the base."""
 
     def load(self) -> None:
         context, p = self.enter_namespace(self.context.model)
@@ -59,7 +59,7 @@ class Kobuki(VelocityDrive):
         self.reset()
         context.observe(hertz, self.publish, transforms=self._broadcasts, remembers=True, topics=[
             *self._states.topics, *self._odometer.topics, self._imu_topic])
-        self._events.follow(hertz)
+        self._events.publish_at(hertz)
 
     def required_number(self, name: str) -> float:
         """Return the number of a child element. Raises PluginError if it is not above 0."""
@@ -165,10 +165,10 @@ class KobukiEvents:
             context.warn(f"no bumper, cliff and wheel drop events: {missing}")
 
     def clock_set(self) -> None:
-        """What was asked belongs to another time."""
+        """Discard pending rays after sim time was set."""
         self._rays.clock_set()
 
-    def follow(self, hertz: float) -> None:
+    def publish_at(self, hertz: float) -> None:
         """Publish at a rate in Hz while there are subscribers."""
         if not self._topics:
             return
@@ -203,7 +203,7 @@ class KobukiEvents:
             core.publish(self._state())
 
     def _bumps(self, contacts: List[Any]) -> Dict[str, bool]:
-        """Which bumpers are pressed, by the direction that the contact comes from."""
+        """Which bumpers are pressed, by the direction of the contact."""
         found = dict.fromkeys(_SIDES, False)
         pose = self._context.pose
         heading = rpy_from_quat(pose.orientation)[2]
@@ -250,5 +250,5 @@ class KobukiEvents:
 
 
 def _adc_value(distance: float) -> int:
-    """What the base's converter reads at a distance (m), cut to the 16 bits of the message."""
+    """Return the reading of the analogue-digital converter at a distance (m), 16 bits."""
     return int(_READING * math.atan2(_READING_AT, distance)) & 0xFFFF

@@ -20,7 +20,7 @@ def planar_pose(x: float, y: float, yaw: float) -> Pose:
     return Pose((x, y, 0.0), quat_from_rpy(0.0, 0.0, yaw))
 
 
-def in_base(pose: Pose, twist: Twist) -> Tuple[float, float, float]:
+def heading_velocity(pose: Pose, twist: Twist) -> Tuple[float, float, float]:
     """Forward and sideways velocity in the robot's heading, and the yaw rate in the world."""
     yaw = rpy_from_quat(pose.orientation)[2]
     (vx, vy, _), c, s = twist.linear, math.cos(yaw), math.sin(yaw)
@@ -34,10 +34,10 @@ def planar_twist(velocity: Tuple[float, float, float]) -> Twist:
 
 
 class WheelRotations:
-    """How far wheels turn between two calls, rad, without what they are put to.
+    """Rotation of wheels between two calls, rad, without positions that were set directly.
 
-    Gazebo's drives integrate the rates of the wheels: /gazebo/set_model_configuration moves them,
-    and not the robot. Positions are without drift, so that rates count only over such a jump.
+    Gazebo's drives integrate wheel rates, so /gazebo/set_model_configuration does not move the
+    odometry. Positions have no drift; rates are used only over such a jump.
     """
 
     def __init__(self, joints: Sequence[Joint]) -> None:
@@ -52,16 +52,16 @@ class WheelRotations:
         """Return the rotation of each wheel since the last call, `dt` s ago."""
         before, self._last = self._last, []
         turns = []
-        for joint, (position, puts) in zip(self._joints, before):
+        for joint, (position, count) in zip(self._joints, before):
             began, now = joint.set_count, joint.position
-            steady = puts in (began, -1.0)   # there is no count outside of observations
+            steady = count in (began, -1.0)   # there is no count outside of observations
             self._last.append((now, began))
             turns.append(now - position if steady else joint.velocity * dt)
         return turns
 
 
 class WheelCounter:
-    """Where a robot is by what its wheels have turned; Siegwart, Autonomous Mobile Robots, 5.2.4.
+    """Pose of a robot from the rotation of its wheels; Siegwart, Autonomous Mobile Robots, 5.2.4.
 
     Attributes:
         pose: since the last `reset`.
@@ -87,7 +87,7 @@ class WheelCounter:
         return planar_pose(self._x, self._y, self._yaw)
 
     def count(self, dt: float) -> Tuple[float, float, float]:
-        """Add up what has been turned; returns the velocity (forward, 0, yaw) over the last dt."""
+        """Add the rotation of the last `dt` s; return its mean velocity (forward, 0, yaw)."""
         left, right = (turn * self._radius for turn in self._wheels.rotations_since_last(dt))
         way, turn = (left + right) / 2.0, (right - left) / self._separation
         self._x += way * math.cos(self._yaw + turn / 2.0)

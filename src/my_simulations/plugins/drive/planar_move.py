@@ -9,7 +9,7 @@ import math
 from typing import Tuple
 
 from ...geometry import Pose, Twist, rpy_from_quat
-from .odometry import in_base
+from .odometry import heading_velocity
 from .velocity_drive import VelocityDrive
 
 
@@ -51,5 +51,5 @@ class PlanarMove(VelocityDrive):
                                 - rpy_from_quat(before.orientation)[2], 2.0 * math.pi)
         yaw = self._command.yaw if abs(self._command.yaw) > math.pi / dt else turned / dt
         x, y, _ = pose.position
-        self._odometer.publish(pose._replace(position=(x, y, 0.0)), in_base(
+        self._odometer.publish(pose._replace(position=(x, y, 0.0)), heading_velocity(
             pose, Twist((linear[0], linear[1], 0.0), (0.0, 0.0, yaw))))

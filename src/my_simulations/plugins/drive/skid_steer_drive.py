@@ -4,7 +4,7 @@ Parameters, defaults, topics and laws are those of gazebo_plugins.
 """
 from __future__ import annotations
 
-from .odometry import in_base
+from .odometry import heading_velocity
 from .velocity_drive import VelocityDrive
 
 _CORNERS = ("leftFront", "rightFront", "leftRear", "rightRear")
@@ -33,7 +33,7 @@ class SkidSteerDrive(VelocityDrive):
             self._odometer.transform(pose)
         x, y, _ = pose.position
         self._odometer.publish(pose._replace(position=(x, y, 0.0)),
-                               in_base(pose, self.context.twist))
+                               heading_velocity(pose, self.context.twist))
 
     def _drive(self) -> None:
         for joint, speed in zip(self._joints, 2 * self._command.wheel_speeds(self._separation)):

@@ -7,7 +7,7 @@ from ...geometry import Pose
 from ..base import Plugin
 from ..context import Joint, Publication
 from ..stepwise_change import StepwiseChange
-from .odometry import DRIVE_COVARIANCE, NO_COVARIANCE, Odometer, WheelCounter, in_base
+from .odometry import DRIVE_COVARIANCE, NO_COVARIANCE, Odometer, WheelCounter, heading_velocity
 from .wheels import VelocityCommand, WheelFrames, WheelStates
 
 
@@ -122,4 +122,4 @@ class OdometryDrive(VelocityDrive):
         if self._encoder:
             velocity = self._counter.count(self.elapsed())
             return self._counter.pose, velocity
-        return self.context.pose, in_base(self.context.pose, self.context.twist)
+        return self.context.pose, heading_velocity(self.context.pose, self.context.twist)

@@ -15,7 +15,7 @@ from ..time_out import TimeOut
 
 
 class VelocityCommand:
-    """The last geometry_msgs/Twist; it holds for ever, as in Gazebo, unless it is given a time.
+    """The last geometry_msgs/Twist; it applies until the next one, unless it has a timeout.
 
     Attributes:
         x, y: m/s.
@@ -26,7 +26,7 @@ class VelocityCommand:
                  change: Optional[StepwiseChange] = None) -> None:
         """`timeout`: s of sim time after which a command expires; None for never.
 
-        `change` begins when a command has come, and again at its first step after the timeout.
+        `change` begins with each command, and again at its first step after the timeout.
         """
         self._context, self._change = context, change
         self._time_out = TimeOut(context, timeout) if timeout is not None else None
@@ -66,7 +66,7 @@ class VelocityCommand:
 
 
 class WheelFrames:
-    """Broadcasts where wheels are in the links that carry them."""
+    """Broadcasts the poses of wheels in the links that carry them."""
 
     def __init__(self, context: Context, joints: Sequence[Joint]) -> None:
         self._context = context

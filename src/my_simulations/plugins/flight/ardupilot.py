@@ -4,8 +4,8 @@ Elements, defaults, packets and laws are those of ardupilot_gazebo (SITL model `
 sends a float for each channel, the plugin answers with time, IMU, attitude, velocity and position
 as 17 doubles. Since the first packet the world waits up to 1 s for the packet of each step; after
 `<connectionTimeoutMaxCount>` misses in a row the vehicle counts as alone. Where it differs: before
-the first packet it is looked for 50 times a second of sim time; the loops of joints run in the
-engine; `<frequencyCutoff>` and `<samplingRate>` have no effect, as there.
+the first packet the plugin checks for one 50 times a second of sim time; the loops of joints run in
+the engine; `<frequencyCutoff>` and `<samplingRate>` have no effect, as there.
 """
 from __future__ import annotations
 

@@ -1,11 +1,10 @@
-"""libgazebo_grasp_fix.so: what a gripper has between its fingers stays in its palm.
+"""libgazebo_grasp_fix.so: a gripped object is fixed to the palm.
 
 Parameters and defaults are those of gazebo_grasp_plugin. An object that is pressed from opposite
-sides in more than `grip_count_threshold` looks is fixed to the palm, and let go when a finger has
-gone back from it by more than `release_tolerance`. A look takes the mean of what fingers did since
-the one before: there of every step, here a hundred times a second, while a finger touches
-something. Where it differs: collisions of what is held stay on
-(`<disable_collisions_on_attach>`).
+sides in more than `grip_count_threshold` updates is fixed to the palm, and released when a finger
+has moved back by more than `release_tolerance`. An update takes the mean of the finger forces since
+the previous one: in the original of every step, here of 100 samples per second during a contact.
+Where it differs: held objects still collide (`<disable_collisions_on_attach>`).
 """
 from __future__ import annotations
 
@@ -21,13 +20,13 @@ from ..parameters import Parameters
 
 _FORGET = 1e-6  # N: a contact that does not press
 _COUNTS = 10    # the usual most of counts
-_SAMPLE_HZ = 100.0  # of contacts between two looks
+_SAMPLE_HZ = 100.0  # of contacts between two updates
 _LEAST_RATIO = 0.3  # of two forces that oppose each other, and the smallest, N: gazebo_grasp_plugin
 _LEAST_FORCE = 1e-4
 
 
 class FingerForce(NamedTuple):
-    """What a finger does to an object: force on the object, N, world axes, and where, m."""
+    """Force of a finger on an object, N, world axes, and its point of application, m."""
 
     finger: str
     force: Vec3
@@ -35,7 +34,7 @@ class FingerForce(NamedTuple):
 
 
 FingerForces = Dict[str, Dict[str, List[FingerForce]]]
-"""By the link of the object and the finger: those of the moments in which it touched."""
+"""Sampled forces by the link of the object and the finger."""
 
 
 @dataclass
@@ -43,8 +42,8 @@ class Arm:
     """A gripper.
 
     Attributes:
-        pressed: since the last look.
-        counts: in how many looks more an object was pressed than not, by its scoped link name.
+        pressed: since the last update.
+        counts: updates with a grip minus updates without, by the scoped link name of the object.
         held: the object that is fixed to the palm; "" for none.
         marks: of each finger that held it, where it touched (in the finger and in the palm frame)
             and which way it pressed (in the palm frame).
@@ -205,7 +204,7 @@ class GraspFix(Plugin):
         context.info(f"arm '{arm.name}' holds {name}")
 
     def _has_opened(self, arm: Arm) -> bool:
-        """Whether a finger has gone back from where it held, against the way it pressed."""
+        """Return whether a finger has moved back from its contact, against its force."""
         palm = inverse(self.context.link(arm.palm).pose)
         for finger, mark, place, way in arm.marks:
             now = transform(palm, transform(self.context.link(finger).pose, mark))

@@ -1,10 +1,10 @@
-"""libHarnessPlugin.so and libgazebo_ros_harness.so: a model hangs on a winch until it is let go.
+"""libHarnessPlugin.so and libgazebo_ros_harness.so: a model hangs on a winch until it is released.
 
 Parameters, gains and topics are those of Gazebo: a sliding `<joint>` from the world to a link, a
 `<winch>` with gains for position and rate, a joint to `<detach>`. `/MODEL/harness/velocity`
-(std_msgs/Float32, m/s) turns the winch, 0 holds; `/MODEL/harness/detach` (std_msgs/Bool) lets go. A
-reset of the world hangs the model up again. Straps hold it across the joint, and upright, as a
-spring of 10 Hz that is critically damped; in Gazebo it is rigid.
+(std_msgs/Float32, m/s) turns the winch, 0 holds; `/MODEL/harness/detach` (std_msgs/Bool) releases
+the model, and a reset of the world hangs it up again. Straps hold it across the joint, and upright,
+as a spring of 10 Hz that is critically damped; in Gazebo it is rigid.
 """
 from __future__ import annotations
 

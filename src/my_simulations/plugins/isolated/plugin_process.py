@@ -23,7 +23,7 @@ from ..context import PluginError
 from ..plugin_faults import innermost_of_plugin, shorten
 from .messages import TRACE_SIGNAL
 
-_LOOK_S = 0.25      # between two looks at a process that does not answer
+_LOOK_S = 0.25      # between two checks of a process that does not answer
 _TRACE_S = 1.0      # for the trace to be written
 _END_S = 3.0        # for the process to end by itself
 _SEND_S = 30.0      # for the process to receive a message
@@ -231,7 +231,7 @@ class PluginProcess:
             os.P_PID, self.pid, os.WEXITED | os.WNOWAIT | os.WNOHANG) is not None
 
     def _await_end(self, seconds: float) -> bool:
-        """Wait for the end of the process; returns whether it came."""
+        """Wait for the end of the process; return whether it has ended."""
         deadline = time.monotonic() + seconds
         while not self._has_ended():
             if time.monotonic() > deadline:

@@ -79,7 +79,7 @@ class Trigger:
         self._drawing = False
 
     def update(self) -> None:
-        """Take a picture if one is due; prepare the renderer when the first subscriber comes."""
+        """Take a picture if one is due; prepare the renderer for the first subscriber."""
         if not (self._warm or self._triggers) and self._stream.wanted:
             self._warm = self._drawn(self._warmed)
         elif self._triggers:
@@ -134,7 +134,7 @@ class TriggeredCamera(_Triggered, Camera):
 
 
 class MultiCamera(Plugin):
-    """Several cameras that look at the same time; a pair has `left` and `right` in its names."""
+    """Several cameras with simultaneous pictures; a pair has `left` and `right` in its names."""
 
     def load(self) -> None:
         context, p = self.enter_namespace(empty_means_model=True)

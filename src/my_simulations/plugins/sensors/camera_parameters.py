@@ -42,7 +42,7 @@ class CameraTopics:
 
 
 def topics_of(context: Context, suffix: str = "") -> CameraTopics:
-    """Names as the element says; `suffix` (`/left`) goes to the camera's name."""
+    """Return the topics of the element; `suffix` (`/left`) is appended to the camera's name."""
     p = context.parameters
     return CameraTopics(p.text("cameraName").strip("/") + suffix,
                         p.text("imageTopicName") or "image_raw",
@@ -85,7 +85,7 @@ class ImagerRate:
                         for name in names if name]
 
     def _check_subscribers(self) -> None:
-        """Take a picture at once when a first subscriber comes, as in Gazebo."""
+        """Take a picture at once for a first subscriber, as in Gazebo."""
         before, self._listened = self._listened, self._wanted()
         if self._listened and not before and not self._context.is_stepped_manually:
             self._call()
@@ -168,7 +168,7 @@ class Calibration:
         response.success = (given.width, given.height) in ((self.width, self.height), (0, 0))
         if response.success:
             self._given = given
-            response.status_message = "kept until the model goes"
+            response.status_message = "stored until the model is deleted"
         else:
             response.status_message = (f"the camera has {self.width}x{self.height} pixels, not "
                                        f"{given.width}x{given.height}")

@@ -93,7 +93,7 @@ class PictureStream:
         return View(self._link, self._pose, self.spec, outputs or (RGB,))
 
     def publish(self, rgb: Optional[Any], ns: int) -> None:
-        """Publish a picture to who wants it, and the lens."""
+        """Publish a picture and CameraInfo on the topics that have subscribers."""
         context = self._context
         head = header(context, ns, self.topics.frame)
         if self._info.wanted:

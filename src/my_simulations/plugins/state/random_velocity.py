@@ -1,4 +1,4 @@
-"""libRandomVelocityPlugin.so: a model that moves in a random direction, and in another one later.
+"""libRandomVelocityPlugin.so: a model that moves in random directions.
 
 Parameters and defaults are those of Gazebo: `<link>`, `<initial_velocity>` and `<velocity_factor>`
 (m/s), `<update_period>` (s), and the limits `<min_x>`, `<max_x>` and so on of each world axis, in
@@ -58,7 +58,7 @@ class RandomVelocity(Plugin):
 
 
 class InitialVelocity(Plugin):
-    """Sets the velocity of all links when the model comes, and after a reset."""
+    """Sets the velocity of all links when the model is spawned, and after a reset."""
 
     def load(self) -> None:
         p = self.context.parameters
