@@ -15,7 +15,7 @@ from typing import Callable, List, Tuple
 
 import numpy as np
 from row_table import Row, Rows, shown
-from server import processor, resident
+from server import processor, proportional
 
 from my_simulations.appearance.looks import Look
 from my_simulations.description.light import Light
@@ -185,14 +185,14 @@ def small() -> List[Row]:
 
 def memory() -> List[Row]:
     places = rows_of(room_places())
-    with Sensed(furnished(), light=True) as sensed:
-        sensed.sensing.cast(CastRays(EYE, RayFan(360, -3.0, 3.0), at=places)).result()
-        of_rays = resident([sensed.sensing.pid])
-        sensed.sensing.render(RenderCamera(EYE, CameraSpec(640, 480), (RGB, DEPTH),
-                                           places)).result()
-        whole = resident([sensed.sensing.pid])
-    return [("memory of the process, rays alone", f"{of_rays:.0f} MB", "–", True),
-            ("memory of the process, rays and cameras", f"{whole:.0f} MB", "200 MB",
+    with Sensed(furnished()) as rays, Sensed(furnished(), light=True) as cameras:
+        rays.sensing.cast(CastRays(EYE, RayFan(360, -3.0, 3.0), at=places)).result()
+        cameras.sensing.render(RenderCamera(EYE, CameraSpec(640, 480), (RGB, DEPTH),
+                                            places)).result()
+        of_rays, whole = (proportional(pids) for pids in (
+            [rays.sensing.pid], [rays.sensing.pid, cameras.sensing.pid]))
+    return [("memory of the process for rays", f"{of_rays:.0f} MB", "–", True),
+            ("memory of the processes for rays and for cameras", f"{whole:.0f} MB", "200 MB",
              whole <= 200)]
 
 
