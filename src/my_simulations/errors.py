@@ -9,7 +9,9 @@ derives from `SimulationError`:
       CommandError           a request that cannot be carried out
         UnknownEntityError, UnknownFrameError, EngineTimeoutError, EngineLostError, ...
       ResourceError          a file, model or download that cannot be found or fetched
-      MeshError, FrameError, BodyPlanError, ShapeError, ...   raised and handled in one package
+      CommandRefusedError    a command that the engine rejects
+        BodyPlanError, ShapeError, ...
+      MeshError, FrameError, ...   raised and handled in one package
 
 Programming errors raise Python's own exceptions and are never turned into issues.
 """

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field, replace
 from typing import Deque, Dict, List, Optional, Set, Tuple
 
 from ..description.model import WORLD, Joint, Link, Model
-from ..errors import SimulationError
 from ..geometry import IDENTITY, Pose, Vec3, compose, inverse, scale
+from .api import CommandRefusedError
 from .ring_rows import AXES
 
 BASE = -1
@@ -77,7 +77,7 @@ class BodyPlan:
         return len(self.links) == 1 and not self.fixed_base
 
 
-class BodyPlanError(SimulationError):
+class BodyPlanError(CommandRefusedError):
     """The model cannot be built; the message is one sentence for the user."""
 
 

@@ -13,7 +13,7 @@ import pybullet
 from ...description.model import Model
 from ...geometry import Pose, pose_is_finite
 from ..api import CommandRefusedError, EngineBrokenError, Event, RemovedError
-from ..body_plan import BodyPlanError, open_joints
+from ..body_plan import open_joints
 from ..commands import (
     Clear,
     Command,
@@ -42,7 +42,7 @@ from . import bodies
 from .bodies import Body, Part
 from .body_builder import Builder
 from .closing_joints import closing_joints
-from .collision_shapes import ShapeError, ShapeFactory
+from .collision_shapes import ShapeFactory
 from .contact_readout import read_contacts
 from .helper_set import HelperSet
 from .joint_constraints import Constraints
@@ -170,11 +170,7 @@ class BulletBackend:
 
     def _load(self, command: LoadModel) -> None:
         self._check_load(command)
-        try:
-            builder = Builder(command, self._shapes)
-        except (BodyPlanError, ShapeError) as fault:
-            raise CommandRefusedError(str(fault)) from fault
-        entry = self._enter(builder, command.model, command.pose)
+        entry = self._enter(Builder(command, self._shapes), command.model, command.pose)
         state = self._inherited(command) if command.inherit else command.state
         if state is not None:
             restore(entry, state)
@@ -186,10 +182,7 @@ class BulletBackend:
     def _enter(self, builder: Builder, model: Model, pose: Pose) -> Entry:
         """Build a model and register its bodies."""
         first_row = builder.link_rows.start
-        try:
-            built = builder.build(pose)
-        except ShapeError as fault:
-            raise CommandRefusedError(str(fault)) from fault
+        built = builder.build(pose)
         constraints = Constraints(self._helpers.book, model, builder.plans, built, pose,
                                   open_joints(model, builder.plans), first_row)
         entry = Entry(model, builder, built, first_row, pose, constraints)

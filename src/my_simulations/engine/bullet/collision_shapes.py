@@ -26,8 +26,8 @@ from ...description.shapes import (
     Sphere,
     mesh_key,
 )
-from ...errors import SimulationError
 from ...geometry import IDENTITY, IDENTITY_QUAT, ZERO3, Pose, compose, multiply, rotate
+from ..api import CommandRefusedError
 from ..surface_pieces import by_surface
 from .face_boxes import FaceBoxes
 from .shape_files import HullFile, ShapeFiles
@@ -54,7 +54,7 @@ _MESH: Dict[str, Any] = {
 """The arguments of createCollisionShapeArray for a mesh in the body's frame."""
 
 
-class ShapeError(SimulationError):
+class ShapeError(CommandRefusedError):
     """PyBullet rejects a collision; the message is one sentence for the user."""
 
 
