@@ -87,7 +87,7 @@ class BulletBackend:
             SetServos: lambda command: self._helpers.forces.servos.set(
                 command.servos, self._helpers.settings.step_size),
             ReadEfforts: lambda command: self._helpers.forces.servos.efforts(command.rows),
-            AddTimedForces: self._add_timed_forces,
+            AddTimedForces: lambda command: self._helpers.forces.queue(command.forces),
             ClearTimedForces: lambda command: self._helpers.forces.drop(command.force_ids),
             ReadRunState: self._read_run_state, SetRunState: self._set_run_state,
         }
@@ -333,10 +333,3 @@ class BulletBackend:
         self._helpers.divergence.stop(self._rows[row][0] for row in state.stopped)
         self._helpers.restored_sleep.put(
             (self._rows[row][0], place) for row, place in state.resting)
-
-    # -- timed forces ----------------------------------------------------------------------------
-
-    def _add_timed_forces(self, command: AddTimedForces) -> None:
-        refusal = self._helpers.forces.queue(command.forces)
-        if refusal:
-            raise CommandRefusedError(refusal)

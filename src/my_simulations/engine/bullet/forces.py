@@ -19,6 +19,7 @@ from ...geometry import (
     rotate,
     scale,
 )
+from ..api import CommandRefusedError
 from ..ring import pose_and_twist
 from ..run_state import LoopMemory, RunState
 from ..timed_forces import TimedEffort, TimedForce, TimedWrench
@@ -121,13 +122,13 @@ class Forces(StepHelper):
             self._axes.pop(axis.row, None)
             self._limits.pop(axis.row, None)
 
-    def queue(self, forces: Sequence[TimedForce]) -> str:
-        """Queue timed forces; return the reason of a refusal, or ""."""
+    def queue(self, forces: Sequence[TimedForce]) -> None:
+        """Queue timed forces. Raises CommandRefusedError before any is queued."""
         for force in forces:
             if force.row not in (self._parts if isinstance(force, TimedWrench) else self._axes):
-                return "the link or joint of the wrench or effort does not exist"
+                raise CommandRefusedError(
+                    "the link or joint of the wrench or effort does not exist")
         self._timed.update({force.force_id: force for force in forces})
-        return ""
 
     def drop(self, force_ids: Sequence[int]) -> None:
         """Remove timed forces by id."""
