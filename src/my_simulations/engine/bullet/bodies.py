@@ -12,7 +12,6 @@ from typing import Dict, List, Optional, Set, Tuple, Union
 import pybullet
 
 from ...description.model import JointAxis, Link, Model
-from ...description.shapes import Surface
 from ...geometry import (
     IDENTITY,
     ZERO3,
@@ -201,30 +200,29 @@ class Body:
         return self.parts[0] if self.parts[0].index == BASE else None
 
 
-def set_dynamics(uid: int, index: int, surface: Surface, mass: float, moments: Vec3,
-                 may_sleep: bool) -> None:
+def set_dynamics(uid: int, part: Part, may_sleep: bool) -> None:
     """Set inertia, friction and restitution of a link as described, without Bullet's damping."""
     # One call each: some settings make PyBullet apply all of a call to the base (measured, 3.2.7:
     # with maxJointVelocity, the mass of a link became that of the base and freed a fixed one).
     def change(**settings: object) -> None:
-        pybullet.changeDynamics(uid, index, **settings)
+        pybullet.changeDynamics(uid, part.index, **settings)
 
-    if mass > 0.0:
-        change(mass=mass, localInertiaDiagonal=moments)
+    if part.mass > 0.0:
+        change(mass=part.mass, localInertiaDiagonal=part.moments)
     change(
-        lateralFriction=surface_coefficients.friction(surface, mass == 0.0),
+        lateralFriction=part.friction,
         spinningFriction=0.0,
         rollingFriction=0.0,
-        restitution=surface_coefficients.restitution(surface),
+        restitution=surface_coefficients.restitution(surface_coefficients.of_link(part.link)),
     )
     change(contactProcessingThreshold=0.0)
     change(linearDamping=0.0, angularDamping=0.0)
-    if index != BASE:
+    if part.index != BASE:
         change(maxJointVelocity=FASTEST_RATE)
-    if mass > 0.0 and may_sleep:
+    if part.mass > 0.0 and may_sleep:
         change(activationState=pybullet.ACTIVATION_STATE_ENABLE_SLEEPING,
                sleepThreshold=SLEEP_THRESHOLD)
-    elif mass > 0.0:
+    elif part.mass > 0.0:
         change(activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING)
 
 

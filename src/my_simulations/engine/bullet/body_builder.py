@@ -168,8 +168,7 @@ class Builder:
                     is_sphere=[type(c.geometry) for c in link.collisions] == [Sphere],
                     may_sleep=self._may_sleep(link), shapes=taken)
         for uid, own in body.surfaces:
-            set_dynamics(uid, BASE, surface_coefficients.of_link(own.link), masses.mass,
-                         masses.moments, body.may_sleep and not rigid.static)
+            set_dynamics(uid, own, body.may_sleep and not rigid.static)
             if body.rigid and rigid.static:
                 mark_asleep(uid)
         body.radius = radius_of(uids[0])
@@ -298,17 +297,17 @@ class Builder:
         for n, (node, masses) in enumerate(zip(tree.plan.links, tree.masses)):
             index = n if tree.plan.fixed_base else n - 1
             link = carried_by(node, self._model)
-            set_dynamics(uid, index, surface_coefficients.of_link(link), masses.mass,
-                         masses.moments, False)
+            part = self._part(node.index if node.of is None else node.of, index, masses, link)
+            set_dynamics(uid, part, False)
             shape = tree.shapes[n]
             if shape is not None:
                 (collision_groups.static(link) if link.kinematic
                  else collision_groups.moving(link)).set(uid, index)
                 _remove_margin(uid, index, shape)
             if node.index != NO_LINK:
-                parts.append(self._part(node.index, index, masses, link))
+                parts.append(part)
             elif node.of is not None:
-                pieces.append(self._part(node.of, index, masses, link))
+                pieces.append(part)
             if node.joint is not None and node.number is not None:
                 row = self._axis_rows[row_name(node.joint.name, node.number)]
                 axes.append(Axis(row, index, node.joint.name, node.number))
