@@ -437,7 +437,7 @@ def test_several_meshes_are_divided_two_at_a_time_with_a_word_for_each(tmp_path,
                f"open(os.path.join({str(marks)!r}, str(os.getpid())), 'w').close(); "
                f"[time.sleep(0.01) for _ in iter(lambda: len(os.listdir({str(marks)!r})) > 2, 1)];"
                " os.abort()")
-    monkeypatch.setattr(batch, "WORD_EVERY_S", 0.2)
+    monkeypatch.setattr(batch, "PROGRESS_EVERY_S", 0.2)
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1})
     second = MeshData(angle().vertices * 2.0, angle().triangles)
     told = []

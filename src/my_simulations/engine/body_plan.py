@@ -124,8 +124,8 @@ class _Planner:
             for end in (joint.parent, joint.child):
                 (self.at_world if end == WORLD else self.at_link[end]).append(joint)
         self.children = {joint.child for joint in joints}
-        self.held = [link.name for link in model.links
-                     if link.kinematic and self.at_link[link.name]]
+        self.kinematic = [link.name for link in model.links
+                          if link.kinematic and self.at_link[link.name]]
         self.visited: Set[str] = set()
         self.used: Set[str] = set()
 
@@ -133,11 +133,11 @@ class _Planner:
         bodies = []
         for joint in self.at_world:
             end = joint.child if joint.parent == WORLD else joint.parent
-            if end != WORLD and end not in self.visited and end not in self.held:
+            if end != WORLD and end not in self.visited and end not in self.kinematic:
                 bodies.append(self._from_world(end))
-        for name in self.held:
+        for name in self.kinematic:
             if name not in self.visited:
-                bodies += self._from_held(name)
+                bodies += self._from_kinematic(name)
         roots = [link for link in self.model.links if link.name not in self.children]
         for link in roots + self.model.links:
             if link.name not in self.visited:
@@ -159,7 +159,7 @@ class _Planner:
         self._attach_link(body, joint, end, BASE)
         return self._grow(body, end, len(body.links) - 1)
 
-    def _from_held(self, name: str) -> List[BodyPlan]:
+    def _from_kinematic(self, name: str) -> List[BodyPlan]:
         """Plan the bodies of a kinematic link, the links connected to it, and their children."""
         body = self._grow(BodyPlan([self._plan_fixed_link(name)], fixed_base=True), name, 0)
         if any(link.joint is not None for link in body.links):
@@ -181,7 +181,7 @@ class _Planner:
                 other = joint.child if joint.parent == name else joint.parent
                 if joint.name in self.used or other == WORLD or other in self.visited:
                     continue
-                if other in self.held:   # all that reaches it is on a fixed base; the joint is open
+                if other in self.kinematic:   # its base is fixed; the joint is open
                     body.links.append(self._plan_fixed_link(other))
                 else:
                     self.visited.add(other)

@@ -53,7 +53,7 @@ SIZE = (FIRST_RECORD + RECORD_WORDS) * 8
 # Words of the control page. The first group is the engine's, the second the simulator's.
 (STEP, LATEST, HEARTBEAT, STATUS, LATEST_POSES, POSES_ARE_NEWER, PROGRESS, CLOCK_SETS) = range(8)
 DEMAND_NS, WAKE_REQUESTED, POSE_DEMAND_NS = 8, 9, 10
-HELD_STEP = 11   # the engine's: the step at which nothing had moved since the newest slot; or 0
+UNCHANGED_STEP = 11   # the engine's: the step until which the newest slot is valid; or 0
 # The engine's: settings of the world, the step + 1 at which it waits (0: it does not), records, and
 # whether it waits for room for one.
 SETTINGS, WAITS_AT, RECORDS_WRITTEN, WAITS_FOR_ROOM = 12, 13, 14, 15
@@ -200,7 +200,7 @@ class RingWriter:
         the commands have been carried out.
         """
         sequence = self.words[LATEST] + 1
-        self.words[HELD_STEP] = 0
+        self.words[UNCHANGED_STEP] = 0
         self.words[self.memory.slot(sequence) + APPLIED] = 0  # until the rest is whole
         self._fill(self.memory.slot(sequence), sequence, step, clock, links, joints)
         self.words[self.memory.slot(sequence) + APPLIED] = applied
@@ -212,7 +212,7 @@ class RingWriter:
     def write_poses(self, step: int, clock: Clock, links: Buffer) -> None:
         """Write where the links are; their twists, and the joints, may be older."""
         number = self.words[LATEST_POSES] + 1
-        self.words[HELD_STEP] = 0
+        self.words[UNCHANGED_STEP] = 0
         self._fill(self.memory.pose_slot(number), number, step, clock, links, b"")
         self.words[LATEST_POSES] = number
         self.words[POSES_ARE_NEWER] = 1
@@ -221,7 +221,7 @@ class RingWriter:
     def mark_unchanged(self, step: int) -> None:
         """Declare the latest snapshot valid up to a step: nothing has moved since."""
         keep_order()
-        self.words[HELD_STEP] = step
+        self.words[UNCHANGED_STEP] = step
 
     def _fill(self, slot: int, number: int, step: int, clock: Clock, links: Buffer,
               joints: Buffer) -> None:
@@ -336,7 +336,7 @@ class RingReader:
         """
         while True:
             # Before the slot: if that is newer than this step, its own step is greater.
-            held = self.words[HELD_STEP]
+            unchanged = self.words[UNCHANGED_STEP]
             keep_order()
             newer = self.words[POSES_ARE_NEWER]
             number = self.words[LATEST_POSES if newer else LATEST]
@@ -345,7 +345,7 @@ class RingReader:
             step, clock = self.words[slot + SLOT_STEP], self._clock_of(slot)
             links = self._links_of(slot)
             if self._is_whole(slot, number):
-                return max(step, held), clock, links
+                return max(step, unchanged), clock, links
 
     def _newest(self) -> int:
         """The number of the newest slot, read before anything in that slot."""
@@ -383,10 +383,10 @@ class RingReader:
     def _copy(self, sequence: int) -> Optional[Snapshot]:
         slot = self.memory.slot(sequence)
         words, doubles = self.words, self.memory.doubles
-        held = words[HELD_STEP]
+        unchanged = words[UNCHANGED_STEP]
         keep_order()
         if words[POSES_ARE_NEWER]:   # it is the step of these poses
-            held = 0
+            unchanged = 0
         if words[slot + SEQ_END] != sequence:
             return None
         keep_order()
@@ -400,7 +400,7 @@ class RingReader:
         if not self._is_whole(slot, sequence):
             return None
         if words[LATEST] == sequence:
-            step = max(step, now if words[STATUS] == STATUS_PAUSED else held)
+            step = max(step, now if words[STATUS] == STATUS_PAUSED else unchanged)
         return Snapshot(sequence, step, clock, links, joints)
 
     def _is_whole(self, slot: int, sequence: int) -> bool:

@@ -7,7 +7,7 @@ only if the ring is full. A record has a head, a part for each rule that is due 
 rows of all links if a rule asks for them.
 
 A part holds, in this order and as far as the rule asks for them: link rows (`LINK_WIDTH` doubles
-each), joint axes (position, rate, number of times it was put somewhere), then the size in bytes and
+each), joint axes (position, rate, number of times it was set), then the size in bytes and
 a pickled list of the values of the rule's queries.
 """
 from __future__ import annotations
@@ -36,7 +36,7 @@ from .ring import (
 )
 
 NEVER = 1 << 62
-AXIS_WIDTH = 3   # position, rate, puts
+AXIS_WIDTH = 3   # position, rate, number of sets
 
 _MANY = RECORDS // 4   # records that a reader without urgent ones is notified of at once
 
@@ -90,7 +90,7 @@ class RecordWriter:
         self._words = memory.words
         self._buffer, self._source = memory.buffer, source
         self._rules: List[Tuple[int, RecordRule]] = []   # with the step at which each is due
-        self._puts: Counter[int] = collections.Counter()
+        self._joint_sets: Counter[int] = collections.Counter()
         self._answers: Dict[Command, object] = {}   # of this step
         self._end = 0          # of the last record, words from the first one
         self.next_step = NEVER
@@ -112,9 +112,9 @@ class RecordWriter:
         self.next_step = min((due for due, _ in self._rules), default=NEVER)
 
     def count_joint_sets(self, command: Command) -> None:
-        """Count joints that a command puts somewhere."""
+        """Count the joints that a command sets."""
         if isinstance(command, SetJoints):
-            self._puts.update(row for row, _, _ in command.joints)
+            self._joint_sets.update(row for row, _, _ in command.joints)
 
     def _place(self, size: int) -> Optional[int]:
         """Where a record of `size` words fits, in words from the first one."""
@@ -175,7 +175,7 @@ class RecordWriter:
         if rule.joint_rows:
             axes = source.read_axes(rule.joint_rows)
             for n, row in enumerate(rule.joint_rows):
-                axes.insert(AXIS_WIDTH * n + 2, float(self._puts[row]))
+                axes.insert(AXIS_WIDTH * n + 2, float(self._joint_sets[row]))
             found += array.array("d", axes).tobytes()
         if not rule.queries:
             return found

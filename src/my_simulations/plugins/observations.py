@@ -274,8 +274,8 @@ class StepView:
         if place is None:
             raise PluginError("an observation can read only joints that were looked up before")
         at = len(self._links) * _LINK.size + place * _AXIS.size
-        position, rate, puts = _AXIS.unpack_from(self._part.raw, at)
-        return position, rate, puts
+        position, rate, sets = _AXIS.unpack_from(self._part.raw, at)
+        return position, rate, sets
 
     def answer(self, kind: type) -> Tuple[Any, Any]:
         """The observation's query of a kind, and its recorded value. Raises PluginError."""

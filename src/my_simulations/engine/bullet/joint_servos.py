@@ -40,7 +40,7 @@ class _ServoList:
         self.advances.append(law.advance)
         self.largest_efforts.append(_largest_effort(law.servo))
 
-    def advanced(self, uid: int, step: int) -> List[float]:
+    def compute(self, uid: int, step: int) -> List[float]:
         """Return the effort or rate of each servo in the step that begins at count `step`."""
         return [advance(position, rate, step) for (position, rate, _, _), advance in zip(
             pybullet.getJointStates(uid, self.indices), self.advances)]
@@ -176,7 +176,7 @@ class JointServos:
         """
         self._step = step
         for uid, servos in self._effort_servos.items():
-            given = servos.advanced(uid, step)
+            given = servos.compute(uid, step)
             if uid in shared:
                 for row, effort in zip(servos.rows, given):
                     efforts[row] = efforts.get(row, 0.0) + effort
@@ -186,7 +186,7 @@ class JointServos:
         for uid, servos in self._motor_servos.items():
             pybullet.setJointMotorControlArray(
                 uid, servos.indices, pybullet.VELOCITY_CONTROL,
-                targetVelocities=servos.advanced(uid, step), forces=servos.largest_efforts)
+                targetVelocities=servos.compute(uid, step), forces=servos.largest_efforts)
 
     def effort_of(self, row: int) -> float:
         """Return the effort of a servo in the last step, N m or N; 0 if it drives a motor."""

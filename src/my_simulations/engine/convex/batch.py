@@ -13,7 +13,7 @@ from .cache import Decomposition, content_key
 from .decomposition import MeshDecomposer, cache_folder_of, hull_only, ready_parts
 
 _MOST_WORKERS = 4  # each takes about 80 MB
-WORD_EVERY_S = 2.0
+PROGRESS_EVERY_S = 2.0
 """Longest time between two progress messages, s."""
 
 Progress = Callable[[str], None]
@@ -36,16 +36,17 @@ def decompose_all(meshes: Sequence[Named], progress: Progress, *,
         gently: run at low priority, because a world is running meanwhile.
     """
     found: Dict[int, Decomposition] = {}
-    hard: Dict[str, List[int]] = {}  # equal meshes in two files are decomposed once
+    remaining: Dict[str, List[int]] = {}  # equal meshes in two files are decomposed once
     for n, (_, mesh) in enumerate(meshes):
         ready = ready_parts(mesh, cache_dir=cache_dir)
         if ready is None:
-            hard.setdefault(content_key(mesh, ""), []).append(n)
+            remaining.setdefault(content_key(mesh, ""), []).append(n)
         else:
             found[n] = ready
-    if hard:
-        work = _Work([meshes[same[0]] for same in hard.values()], progress, cache_dir, gently)
-        for same, made in zip(hard.values(), work.done()):
+    if remaining:
+        work = _Work([meshes[same[0]] for same in remaining.values()], progress, cache_dir,
+                     gently)
+        for same, made in zip(remaining.values(), work.done()):
             found.update((n, made) for n in same)
     return [found[n] for n in range(len(meshes))]
 
@@ -61,7 +62,7 @@ class _Work:
         self._gently = gently
         self._began = time.monotonic()
         self._waiting: "queue.Queue[int]" = queue.Queue()
-        self._told: "queue.Queue[Tuple[int, Optional[Decomposition]]]" = queue.Queue()
+        self._reports: "queue.Queue[Tuple[int, Optional[Decomposition]]]" = queue.Queue()
         self._busy: Dict[int, float] = {}
         self._percent: Dict[int, int] = {}
         self._made: Dict[int, Decomposition] = {}
@@ -93,17 +94,17 @@ class _Work:
                     n = self._waiting.get_nowait()
                 except queue.Empty:
                     return
-                self._told.put((n, None))
+                self._reports.put((n, None))
                 made = hull_only(self._meshes[n][1])
                 try:
                     made = decomposer.decompose(self._meshes[n][1],
                                           functools.partial(self._percent.__setitem__, n))
                 finally:  # any exception must reach the waiting thread
-                    self._told.put((n, made))
+                    self._reports.put((n, made))
 
     def _receive(self) -> None:
         try:
-            n, made = self._told.get(timeout=WORD_EVERY_S)
+            n, made = self._reports.get(timeout=PROGRESS_EVERY_S)
         except queue.Empty:
             at = "; ".join(f"{self._name(n)}, {self._percent.get(n, 0)} % in "
                            f"{self._seconds(since)}"

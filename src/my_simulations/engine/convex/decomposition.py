@@ -178,7 +178,7 @@ def _cache(cache_dir: Optional[str]) -> PartsCache:
 
 def _follow(output: int, progress: Progress, end: float) -> bool:
     """Report progress until the worker is done; False if it ended, or at the deadline."""
-    told, rest = 0, b""
+    reported, rest = 0, b""
     while True:
         left = end - time.monotonic()
         if left <= 0 or not wait_until_readable(output, left):
@@ -189,8 +189,8 @@ def _follow(output: int, progress: Progress, end: float) -> bool:
         lines = rest + said
         rest = lines[lines.rfind(b"\n") + 1:]
         for found in _PROGRESS.findall(lines):
-            if int(found) >= told + 10:
-                told = int(found)
-                progress(told)
+            if int(found) >= reported + 10:
+                reported = int(found)
+                progress(reported)
         if DONE in lines.split(b"\n")[:-1]:
             return True
