@@ -4,6 +4,8 @@ from __future__ import annotations
 import itertools
 from typing import Any, List, NamedTuple, Optional
 
+import numpy as np
+
 MOST_VERTICES = 256
 """Most corners of a convex mesh; the parts of several share them, down to `PART_VERTICES` each.
 
@@ -56,7 +58,6 @@ class Hull(NamedTuple):
 def full_hull(points: Any) -> Hull:
     """The convex hull of points (n, 3) that are not coplanar."""
     # Not trimesh's, which orients faces with networkx; Qhull gives their orientation.
-    import numpy as np
     from scipy.spatial import ConvexHull
 
     points = np.asarray(points, dtype=np.float64)
@@ -80,8 +81,6 @@ def hull_of(points: Any, most: int = MOST_VERTICES) -> Hull:
     farthest outside of what it has, so that it is inside the exact one, has the same bounding box,
     and the rims of round shapes keep their corners first.
     """
-    import numpy as np
-
     hull = full_hull(points)
     if len(hull.vertices) <= most:
         return hull
@@ -110,8 +109,6 @@ def is_flat(points: Any) -> bool:
 
 def thicken_points(points: Any, thickness: float) -> Hull:
     """The hull of flat points, extended to a thickness of at least `thickness` m."""
-    import numpy as np
-
     points = np.asarray(points, dtype=np.float64)
     axes, spans = _principal(points)
     for axis, span in zip(axes, spans):
@@ -123,8 +120,6 @@ def thicken_points(points: Any, thickness: float) -> Hull:
 
 def _principal(points: Any) -> Any:
     """(principal axes as rows, extents along them), longest first."""
-    import numpy as np
-
     points = np.asarray(points, dtype=np.float64)
     centred = points - points.mean(axis=0)
     axes = np.linalg.eigh(centred.T @ centred)[1].T
@@ -150,8 +145,6 @@ def is_convex(mesh: Any) -> bool:
 
 def _covers(mesh: Any, hull: Hull) -> bool:
     """Whether the triangles of a mesh on a hull cover nearly all of it."""
-    import numpy as np
-
     planes, face_of = np.unique(np.round(hull.planes, 6), axis=0, return_inverse=True)
     if len(planes) * len(mesh.faces) > _MOST_PAIRS:
         return False
@@ -165,8 +158,6 @@ def _covers(mesh: Any, hull: Hull) -> bool:
 
 
 def _areas(corners: Any) -> Any:
-    import numpy as np
-
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     return np.linalg.norm(normals, axis=1) / 2.0
 
@@ -177,7 +168,6 @@ def convex_pieces(mesh: Any) -> Optional[List[Hull]]:
     Those inside of another one are left out, such as the inner side of a closed shell: V-HACD fills
     closed shells, too, and no body can get inside.
     """
-    import numpy as np
     from trimesh.graph import connected_components
 
     groups = connected_components(mesh.face_adjacency, nodes=np.arange(len(mesh.faces)))
@@ -206,8 +196,6 @@ def _not_inside(hulls: List[Hull]) -> List[Hull]:
 
 def moved_onto_hull(points: Any, hull: Hull) -> Any:
     """Move points outside of a hull onto it: V-HACD's parts protrude by half a voxel."""
-    import numpy as np
-
     normals, offsets = hull.planes[:, :3], hull.planes[:, 3]
     moved = np.array(points, dtype=np.float64)
     for _ in range(_PROJECTIONS):
@@ -226,8 +214,6 @@ def stretch_parts(parts: List[Any], points: Any) -> List[Any]:
     V-HACD's parts are also slightly smaller than the mesh, so bodies on them would sink in. Along
     an axis where they are much smaller, a part is missing, and nothing is changed.
     """
-    import numpy as np
-
     together = np.concatenate(parts)
     low, high = together.min(axis=0), together.max(axis=0)
     true_low, true_high = points.min(axis=0), points.max(axis=0)
