@@ -15,29 +15,25 @@ from __future__ import annotations
 
 import platform
 import threading
-from typing import Callable
 
 IS_WEAKLY_ORDERED = platform.machine() not in ("x86_64", "AMD64", "i386", "i686")
 """Whether stores, or loads, of a thread may be reordered among themselves."""
 
 
-def _make_fence() -> Callable[[], None]:
-    lock = threading.Lock()
-
-    def fence() -> None:
-        """Complete all earlier accesses to memory before all later ones; takes about 0.1 us."""
-        with lock:
-            pass
-        with lock:
-            pass
-
-    return fence
+_lock = threading.Lock()
 
 
-def _do_nothing() -> None:
-    """Keep the order of x86."""
+def fence() -> None:
+    """Complete all earlier accesses to memory before all later ones; takes about 0.1 us."""
+    with _lock:
+        pass
+    with _lock:
+        pass
 
 
-fence = _make_fence()
-keep_order = fence if IS_WEAKLY_ORDERED else _do_nothing
-"""Keep earlier loads and stores before later stores, and earlier loads before later loads."""
+def keep_order() -> None:
+    """Keep earlier loads and stores before later stores, and earlier loads before later loads."""
+
+
+if IS_WEAKLY_ORDERED:
+    keep_order = fence

@@ -58,7 +58,7 @@ class ProcessEngine:
         self._numbers = 0
         self._closing = False
         self._verdict = ""
-        self._event_listener: Callable[[Event], None] = _ignore_event
+        self._event_listener: Callable[[Event], None] = lambda event: None
         self._unreported_death: Optional[Tuple[str, List[Command]]] = None
         self._death_listener: Callable[[str, List[Command]], bool] = self._note_death
         self._child: Optional[subprocess.Popen[bytes]] = None
@@ -78,7 +78,6 @@ class ProcessEngine:
 
     @property
     def pid(self) -> int:
-        """Process id of the child."""
         return self._child.pid if self._child else 0
 
     @property
@@ -124,7 +123,6 @@ class ProcessEngine:
         self._reader.start()
 
     def submit(self, command: Command) -> "Future[Reply]":
-        """Queue a command; the future fails with `EngineDiedError` if the child dies before."""
         future: "Future[Reply]" = Future()
         with self._send_lock:
             with self._lock:
@@ -191,7 +189,6 @@ class ProcessEngine:
         self._notices.wake()
 
     def wait_for_notice(self, timeout: float) -> bool:
-        """Wait for the child or `notify_host`; False after `timeout` s."""
         return self._notices.wait(timeout)
 
     def wait_for_wake(self, timeout: float) -> bool:
@@ -287,10 +284,6 @@ def _reason(code: int) -> str:
     if code < 0:
         return f"the physics engine was killed by {signal_name(-code)}"
     return f"the physics engine ended with code {code}"
-
-
-def _ignore_event(_: Event) -> None:
-    return None
 
 
 class PostedCommands:
