@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Dict, List, Optional, Set, Tuple, Union
+from typing import Any, Dict, List, Optional, Sequence, Set, Tuple, Union
 
 import pybullet
 
@@ -260,6 +260,12 @@ def specs_of(body: Body, model: Model) -> List[Tuple[Axis, JointAxis]]:
     """Return the axes of a body of `model`, each with its description."""
     specs = {joint.name: (joint.axis, joint.axis2) for joint in model.joints}
     return [(axis, specs[axis.name][axis.number] or JointAxis()) for axis in body.axes]
+
+
+def axis_states(body: Body) -> Sequence[Sequence[Any]]:
+    """Return the states of the joint axes of a body as PyBullet returns them."""
+    indices = [axis.index for axis in body.axes]
+    return pybullet.getJointStates(body.uid, indices) if indices else ()
 
 
 def set_axis_state(body: Body, axis: Axis, position: float, rate: float = 0.0) -> None:

@@ -27,14 +27,12 @@ import pybullet
 
 from ...geometry import Vec3
 from ..run_state import SPLIT_IMPULSES_NOT_BEGUN, RestPose
-from .bodies import Body
+from .bodies import Body, axis_states
 from .body_events import COMMANDED, BodyEvent
 from .contact_points import DISTANCE, FRICTION, FRICTION_2, LOAD, OTHER_BODY
 from .rest import put_at_rest, read_rest_pose
 from .step_helper import FAR, StepHelper, next_multiple
 from .world_parameters import USUAL_ACCURACY, Accuracy, WorldParameters
-
-JointStates = Sequence[Any]  # as PyBullet returns them
 
 EVERY = 16               # steps between two checks of articulated bodies
 _RIGID_EVERY = 256       # the same for rigid bodies, of which there may be hundreds
@@ -63,14 +61,12 @@ class _Tree:
     """An articulated body.
 
     Attributes:
-        indices: PyBullet's indices of its axes.
         still_checks: consecutive checks at which it stood still.
         skip: number of the next checks that skip an arm without contacts.
         held: pose of its base, if that is free, and of its axes to restore; None: not held.
     """
 
     body: Body
-    indices: List[int]
     still_checks: int = 0
     skip: int = 0
     held: Optional[RestPose] = None
@@ -106,7 +102,7 @@ class ContactSettling(StepHelper):
         if body.moves:
             self._moving.add(body.uid)
         if body.moves and not body.rigid:
-            tree = _Tree(body, [axis.index for axis in body.axes])
+            tree = _Tree(body)
             self._trees[body.uid] = tree
             self._new_trees.append(tree)
         elif body.moves and not body.sleeps:
@@ -175,7 +171,7 @@ class ContactSettling(StepHelper):
             self._parameters.split_impulses(True)
             # At once: an arm whose zero pose is past its limits may be inside the ground there.
             for tree in self._new_trees if step % EVERY else ():
-                _correct_limits(tree.body, _states(tree))
+                _correct_limits(tree.body, axis_states(tree.body))
             self._new_trees.clear()
         if step % EVERY:
             return
@@ -188,7 +184,7 @@ class ContactSettling(StepHelper):
             self._leaning = any(_creeps(body) for body in self._rigid.values())
         standing = False
         for tree in self._trees.values():
-            states = _states(tree)
+            states = axis_states(tree.body)
             if tree.held is None:
                 _correct_limits(tree.body, states)
             held = tree.held is not None
@@ -208,7 +204,7 @@ class ContactSettling(StepHelper):
         return all(contact[DISTANCE] > -_TOLERATED_OVERLAP
                    for contact in pybullet.getContactPoints())
 
-    def _stands(self, tree: _Tree, states: JointStates) -> bool:
+    def _stands(self, tree: _Tree, states: Sequence[Sequence[Any]]) -> bool:
         """Whether an articulated body is slow, touches something, and is not held."""
         body = tree.body
         held, tree.held = tree.held, None
@@ -243,7 +239,7 @@ class ContactSettling(StepHelper):
             tree.still_checks = 0
         return True
 
-    def _is_driven(self, body: Body, states: JointStates) -> bool:
+    def _is_driven(self, body: Body, states: Sequence[Sequence[Any]]) -> bool:
         """Whether a motor or a servo moves an axis, however slowly.
 
         A blocked axis, as of a wheel against a wall, stays below a tenth of its commanded rate.
@@ -255,12 +251,7 @@ class ContactSettling(StepHelper):
         return False
 
 
-def _states(tree: _Tree) -> JointStates:
-    found: JointStates = pybullet.getJointStates(tree.body.uid, tree.indices) or ()
-    return found
-
-
-def _correct_limits(body: Body, states: JointStates) -> None:
+def _correct_limits(body: Body, states: Sequence[Sequence[Any]]) -> None:
     """Move joints that are past a limit towards it, with unchanged rates."""
     for axis, (position, rate, *_) in zip(body.axes, states):
         past = position - min(max(position, axis.lower), axis.upper)

@@ -10,11 +10,9 @@ from __future__ import annotations
 from math import sqrt
 from typing import Callable, Dict, Iterable, List, NamedTuple, Optional, Set
 
-import pybullet
-
 from ...geometry import Vec3, norm, scale, subtract
 from ..run_state import RestPose
-from .bodies import Axis, Body
+from .bodies import Axis, Body, axis_states
 from .body_events import BodyEvent
 from .link_states import motion
 from .rest import put_at_rest, read_rest_pose
@@ -166,5 +164,5 @@ def _implausible_inertia(body: Body) -> str:
 
 def _fastest(body: Body) -> Optional[Axis]:
     """Return the joint axis with the highest rate if that is above `_FAST_JOINT`."""
-    rates = [abs(pybullet.getJointState(body.uid, axis.index)[1]) for axis in body.axes]
+    rates = [abs(state[1]) for state in axis_states(body)]
     return body.axes[rates.index(max(rates))] if rates and max(rates) > _FAST_JOINT else None

@@ -16,7 +16,7 @@ import pybullet
 from ...geometry import IDENTITY, STILL, Pose, Vec3, inverse
 from ..body_plan import BASE
 from ..ring import JOINT_WIDTH, JOINTS, LINK_WIDTH, LINKS
-from .bodies import FASTEST_RATE, Body
+from .bodies import FASTEST_RATE, Body, axis_states
 from .body_events import ACTUATED, COMMANDED, BodyEvent, BodyObserver
 from .closing_joints import ClosingJoint
 from .link_rows import ROW, link_row, place_row
@@ -283,8 +283,7 @@ class StateReadout(BodyObserver):
         found = motions(uid, [part.index for part in children])
         if body.base is not None:
             found.insert(0, motion(uid, BASE))
-        states = pybullet.getJointStates(uid, [axis.index for axis in body.axes]) \
-            if body.axes else ()
+        states = axis_states(body)
         total = 0.0
         for position, orientation, linear, angular in found:
             total += sum(position) + sum(orientation) + sum(linear) + sum(angular)

@@ -32,7 +32,7 @@ from ..body_plan import BASE
 from ..commands import Frame, LinkState, SetJoints, SetLinkState, SetModelState
 from ..ring import pose_and_twist
 from . import bodies
-from .bodies import Axis, Body, Part, set_axis_state
+from .bodies import Axis, Body, Part, axis_states, set_axis_state
 from .body_events import BodyEvent
 from .link_rows import ROW
 from .link_states import read_com_pose
@@ -162,7 +162,7 @@ class StateSetter:
                    twist: Optional[Twist]) -> None:
         lead = self.link_state(body.parts[0].row)
         target = lead.pose
-        rates = {axis.index: pybullet.getJointState(body.uid, axis.index)[1] for axis in body.axes}
+        rates = {axis.index: state[1] for axis, state in zip(body.axes, axis_states(body))}
         if body.base is None:
             way = compose(wanted, inverse(current))
             if not _move_by_joints(body, way):
@@ -174,9 +174,8 @@ class StateSetter:
             bodies.set_pose(body, target)
         if twist is not None:
             rates = _first_rates(body, twist) if body.base is None else {}
-        for axis in body.axes:
-            set_axis_state(body, axis, pybullet.getJointState(body.uid, axis.index)[0],
-                     rates.get(axis.index, 0.0))
+        for axis, state in zip(body.axes, axis_states(body)):
+            set_axis_state(body, axis, state[0], rates.get(axis.index, 0.0))
         if twist is not None:
             bodies.stop_ball_joints(body)
         if body.moves and body.base is not None:
