@@ -43,18 +43,17 @@ def moving(link: Link, role: str = "") -> Filter:
     """Return the filter of a moving link; `role`: `Recipe.role` of its shape."""
     if role == "empty":
         return NOTHING
-    bits = _bits(link)
-    solid = [c.geometry for c in link.collisions if not isinstance(c.geometry, Empty)]
-    kind = _BOXES if all(isinstance(geometry, Box) for geometry in solid) else _OTHERS
-    return Filter(bits << _SHIFT | kind, bits << _SHIFT)
+    bits = _bits(link) << _SHIFT
+    are_boxes = all(isinstance(c.geometry, (Box, Empty)) for c in link.collisions)
+    return Filter(bits | (_BOXES if are_boxes else _OTHERS), bits)
 
 
 def static(link: Link, role: str = "") -> Filter:
     """Return the filter of a static link; `role`: `Recipe.role` of its shape."""
     if role == "empty":
         return NOTHING
-    bits = _bits(link)
-    return Filter(bits << _SHIFT, {"plane": _OTHERS, "floor": _BOXES}.get(role, _BOXES | _OTHERS))
+    meets = {"plane": _OTHERS, "floor": _BOXES}.get(role, _BOXES | _OTHERS)
+    return Filter(_bits(link) << _SHIFT, meets)
 
 
 def _bits(link: Link) -> int:

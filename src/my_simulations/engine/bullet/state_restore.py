@@ -135,12 +135,10 @@ def inherited(before: Entry, model: Model, frame: Pose, state_of: Callable[[int]
                                                            shift.position)))
         states.append(state)
     axes: Dict[str, Any] = {
-        row_name(axis.name, axis.number): axis_table[axis.row].tolist()
+        row_name(axis.name, axis.number): tuple(axis_table[axis.row].tolist())
         for body in before.bodies for axis in body.axes}
-    joints_of = axis_rows(model)
     return ModelState(tuple(states), tuple(
-        (values[0], values[1])
-        for values in (axes.get(row.name, (0.0, 0.0)) for row in joints_of)))
+        axes.get(row.name, (0.0, 0.0)) for row in axis_rows(model)))
 
 
 def _nearly(one: Pose, other: Pose) -> bool:
