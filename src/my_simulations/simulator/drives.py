@@ -34,16 +34,9 @@ class DriveSettings:
 
     def commands(self) -> List[Command]:
         """Commands that set the drives in an engine without any."""
-        commands: List[Command] = []
-        if self.motors:
-            commands.append(SetMotors(self.motors))
-        if self.planar:
-            commands.append(SetPlanarVelocities(self.planar))
-        if self.servos:
-            commands.append(SetServos(self.servos))
-        if self.slips:
-            commands.append(SetWheelSlips(self.slips))
-        return commands
+        kinds = ((SetMotors, self.motors), (SetPlanarVelocities, self.planar),
+                 (SetServos, self.servos), (SetWheelSlips, self.slips))
+        return [make(drives) for make, drives in kinds if drives]   # type: ignore[arg-type]
 
 
 class Drives:
@@ -206,15 +199,12 @@ class Drives:
         return DriveSettings(tuple(self._motors.values()), tuple(self._planar.values()),
                              tuple(self._servos.values()), tuple(self._slips.values()))
 
-    def replace_all(self, settings: DriveSettings) -> None:
+    def replace_all(self, settings: DriveSettings = DriveSettings()) -> None:
         """Store drives that the engine has already."""
         self._motors = {motor.row: motor for motor in settings.motors}
         self._planar = {one.model_id: one for one in settings.planar}
         self._servos = {servo.row: servo for servo in settings.servos}
         self._slips = {wheel.row: wheel for wheel in settings.slips}
-
-    def restore_commands(self) -> List[Command]:
-        return self.settings.commands()
 
     def forget_entity(self, entity: Entity) -> None:
         """Remove the drives of a model that was deleted from the engine."""
@@ -225,49 +215,32 @@ class Drives:
         for row in entity.link_ids:
             self._slips.pop(row, None)
 
-    def forget_all(self) -> None:
-        """Remove all drives, after the engine was cleared."""
-        self._motors.clear()
-        self._planar.clear()
-        self._servos.clear()
-        self._slips.clear()
+    def transfer_to_successor(self, old: Entity, new: Entity) -> DriveSettings:
+        """Return the drives of a replaced model as those of its successor `new`.
 
-    def transfer_to_successor(self, old: Entity, new: Entity) -> List[Command]:
-        """Commands that move the drives of a replaced model to its successor `new`."""
-        names = {old.first_joint_row + n: name for n, name in enumerate(old.joint_names)}
-        motors = [replace(motor, row=new.first_joint_row + new.joint_names.index(names[row]))
-                  for row, motor in self._motors.items() if names.get(row) in new.joint_names]
-        servos = [replace(servo, row=new.first_joint_row + new.joint_names.index(names[row]))
-                  for row, servo in self._servos.items() if names.get(row) in new.joint_names]
+        The planar velocities are those of all models, if the model has one.
+        """
+        links, axes = old.rows_in(new)
         planar = self._planar.get(old.model_id)
-        commands: List[Command] = [SetMotors(tuple(motors))] if motors else []
-        if servos:
-            commands.append(SetServos(tuple(servos)))
-        if planar is not None:
-            moved = replace(planar, model_id=new.model_id)
-            others = [one for one in self._planar.values() if one is not planar]
-            commands.append(SetPlanarVelocities((*others, moved)))
-        links = {old.first_link_row + n: name for n, name in enumerate(old.link_names)}
-        wheels = [replace(wheel, row=new.first_link_row + new.link_names.index(links[row]),
-                          joint_row=new.first_joint_row
-                          + new.joint_names.index(names[wheel.joint_row]))
-                  for row, wheel in self._slips.items() if links.get(row) in new.link_names
-                  and names.get(wheel.joint_row) in new.joint_names]
-        if wheels:
-            commands.append(SetWheelSlips(tuple(wheels)))
-        return commands
+        return DriveSettings(
+            tuple(replace(motor, row=axes[row]) for row, motor in self._motors.items()
+                  if row in axes),
+            () if planar is None else (
+                *(one for one in self._planar.values() if one is not planar),
+                replace(planar, model_id=new.model_id)),
+            tuple(replace(servo, row=axes[row]) for row, servo in self._servos.items()
+                  if row in axes),
+            tuple(replace(wheel, row=links[row], joint_row=axes[wheel.joint_row])
+                  for row, wheel in self._slips.items()
+                  if row in links and wheel.joint_row in axes))
 
-    def store_transferred(self, commands: Sequence[Command]) -> None:
-        """Record the drives that `transfer_to_successor` moved, after the engine has moved them."""
-        for command in commands:
-            if isinstance(command, SetMotors):
-                self._motors.update({motor.row: motor for motor in command.motors})
-            elif isinstance(command, SetPlanarVelocities):
-                self._planar = {one.model_id: one for one in command.velocities}
-            elif isinstance(command, SetWheelSlips):
-                self._slips.update({wheel.row: wheel for wheel in command.wheels})
-            elif isinstance(command, SetServos):
-                self._store_servos(command.servos)
+    def store_transferred(self, moved: DriveSettings) -> None:
+        """Store the result of `transfer_to_successor`, after the engine has these drives."""
+        self._motors.update({motor.row: motor for motor in moved.motors})
+        if moved.planar:
+            self._planar = {one.model_id: one for one in moved.planar}
+        self._slips.update({wheel.row: wheel for wheel in moved.slips})
+        self._store_servos(moved.servos)
 
     def _store_servos(self, servos: Sequence[JointServo]) -> None:
         for servo in servos:

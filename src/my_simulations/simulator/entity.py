@@ -120,6 +120,16 @@ class Entity:
         return (self.first_joint_row + self.joint_names.index(name)
                 if name in self.joint_names else None)
 
+    def rows_in(self, successor: "Entity") -> Tuple[Dict[int, int], Dict[int, int]]:
+        """Return the rows of its links and axes in a successor, by row, if that has them too."""
+        links = {row: successor.first_link_row + successor.link_names.index(name)
+                 for row, name in zip(self.link_ids, self.link_names)
+                 if name in successor.link_names}
+        axes = {row: successor.first_joint_row + successor.joint_names.index(name)
+                for row, name in zip(self.joint_rows, self.joint_names)
+                if name in successor.joint_names}
+        return links, axes
+
     def state(self, snapshot: Snapshot) -> Tuple[Pose, Twist]:
         """World pose of the model frame, twist of the canonical link at its origin."""
         if not self.link_names:

@@ -277,7 +277,8 @@ class Models(ConnectedModels):
                     replaced(load_command(entity), inherit=old.model_id),
                     RemoveModel(old.model_id),
                     *self._connections.joints.commands(session.registry, name, entity),
-                    *([AddTimedForces(tuple(forces))] if forces else []), *driving,
+                    *([AddTimedForces(tuple(forces))] if forces else []),
+                    *driving.commands(),
                     *self._connections.pins_with(name, entity, session.registry))))
             except CommandError:
                 self._forget(entity)

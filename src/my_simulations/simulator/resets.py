@@ -92,7 +92,7 @@ class Resets:
             self._move_linkless_models(entities)
             dropped = self._wrenches.ids
             self._wrenches.replace_all()
-            self._drives.forget_all()
+            self._drives.replace_all()
             if session.supervisor.restarts != restarts:  # the new engine may have received them
                 session.call(ClearTimedForces(dropped))
 

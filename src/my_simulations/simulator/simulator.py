@@ -140,7 +140,7 @@ class Simulator:
                                     ClearTimedForces(self.wrenches.ids))))
                 self.models.forget_all()
                 self.wrenches.replace_all()
-                self.drives.forget_all()
+                self.drives.replace_all()
                 if session.supervisor.restarts != restarts:  # the new one has the old models
                     session.call(Batch((*self._settings_of(world), Pause(), Clear())))
                 session.world, self._world_meshes = world, meshes or {}
@@ -176,7 +176,7 @@ class Simulator:
         commands: List[Command] = [self.physics.command(),
                                    SetClock(snapshot.step, clock.sim_ns(snapshot.step)),
                                    *self.models.restore_commands(snapshot),
-                                   *self.drives.restore_commands()]
+                                   *self.drives.settings.commands()]
         pending = self.wrenches.pending(snapshot.step)
         if pending:
             commands.append(AddTimedForces(pending))

@@ -224,10 +224,7 @@ class Wrenches:
 
     def transfer_to_successor(self, old: Entity, new: Entity) -> List[TimedForce]:
         """The entries of a replaced model, with the rows of its successor `new`."""
-        links = {old.first_link_row + n: new.first_link_row + new.link_names.index(name)
-                 for n, name in enumerate(old.link_names) if name in new.link_names}
-        axes = {old.first_joint_row + n: new.first_joint_row + new.joint_names.index(name)
-                for n, name in enumerate(old.joint_names) if name in new.joint_names}
+        links, axes = old.rows_in(new)
         found: List[TimedForce] = []
         for force in self.pending(self._session.ring.step):
             rows = links if isinstance(force, TimedWrench) else axes

@@ -52,7 +52,7 @@ def test_wheels_slip_on_in_a_new_engine_until_a_reset(case):
     simulator.clock.advance(1)
     assert len(backends) == 2 and backends[-1].wheel_slips == {slip.row: slip}
     simulator.resets.reset_simulation()
-    assert simulator.drives.restore_commands() == []
+    assert simulator.drives.settings.commands() == []
 
 
 def test_wheels_slip_on_after_an_edit_and_no_more_after_the_model_has_gone(case):
@@ -65,7 +65,7 @@ def test_wheels_slip_on_after_an_edit_and_no_more_after_the_model_has_gone(case)
     now = _slip(simulator)
     assert now.row != slip.row and backends[-1].wheel_slips[now.row] == now
     simulator.models.delete("cart")
-    assert simulator.drives.restore_commands() == []
+    assert simulator.drives.settings.commands() == []
 
 
 def test_wrenches_are_asked_for_by_name_fixed_joints_too(case):

@@ -13,7 +13,15 @@ from ...sensing.api import DEPTH, RGB
 from ..base import Plugin
 from ..context import Context, Publication
 from .camera_parameters import CameraTopics, ImagerRate, topics_of
-from .image_messages import DepthGeometry, LazyValue, cloud_message, header, make_image
+from .image_messages import (
+    POINT_STEP,
+    XYZ_RGB,
+    DepthGeometry,
+    LazyValue,
+    cloud_message,
+    header,
+    make_image,
+)
 from .picture_stream import PictureStream, blocks_of
 
 _FAR = float("inf")
@@ -85,7 +93,9 @@ class DepthStream:
         if self._geometry is None:
             spec = self._lens.spec
             self._geometry = DepthGeometry(spec.width, spec.height, spec.focal_length)
-        return cloud_message(self._context, head, *self._geometry.cloud(depth, rgb))
+        points, dense = self._geometry.cloud(depth, rgb)
+        return cloud_message(self._context, head, points, points.shape[:2], POINT_STEP, XYZ_RGB,
+                             dense)
 
 
 def _within(span: "tuple[float, float]", depth: Any) -> Any:

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import io
-from typing import Any, Callable, Dict, Tuple
+from typing import Any, Callable, Dict, Sequence, Tuple
 
 from ..context import Context
 
@@ -129,23 +129,30 @@ class DepthGeometry:
         return points, bool(np.isfinite(depth).all())
 
 
-def cloud_message(context: Context, header: Any, points: Any, dense: bool) -> Any:
-    """A sensor_msgs/PointCloud2 of (h, w, 8) points."""
+PointFields = Sequence[Tuple[str, int, int]]
+"""Name, offset in a point (bytes) and type of each field."""
+
+XYZ: PointFields = (("x", 0, FLOAT32), ("y", 4, FLOAT32), ("z", 8, FLOAT32))
+XYZ_RGB: PointFields = (*XYZ, ("rgb", _RGB_AT, FLOAT32))
+
+
+def cloud_message(context: Context, header: Any, points: Any, shape: Tuple[int, int],
+                  step: int, fields: PointFields, dense: bool) -> Any:
+    """Return a sensor_msgs/PointCloud2 of an array with the bytes of the points.
+
+    `shape`: rows and points of a row; `step`: bytes of a point.
+    """
     message = context.message("sensor_msgs/PointCloud2")
-    message.header = header
-    message.height, message.width = points.shape[:2]
-    message.fields = [point_field(context, name, offset) for name, offset in (
-        ("x", 0), ("y", 4), ("z", 8), ("rgb", _RGB_AT))]
-    message.is_bigendian, message.point_step = False, POINT_STEP
-    message.row_step, message.is_dense = POINT_STEP * message.width, dense
+    message.header, (message.height, message.width) = header, shape
+    message.fields = []
+    for name, offset, kind in fields:
+        field = context.message("sensor_msgs/PointField")
+        field.name, field.offset, field.datatype, field.count = name, offset, kind, 1
+        message.fields.append(field)
+    message.is_bigendian, message.is_dense = False, dense
+    message.point_step, message.row_step = step, step * message.width
     message.data = points.tobytes()
     return message
-
-
-def point_field(context: Context, name: str, offset: int, kind: int = FLOAT32) -> Any:
-    field = context.message("sensor_msgs/PointField")
-    field.name, field.offset, field.datatype, field.count = name, offset, kind, 1
-    return field
 
 
 def header(context: Context, ns: int, frame: str) -> Any:

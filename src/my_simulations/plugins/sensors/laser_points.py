@@ -15,10 +15,11 @@ from typing import Any, Optional
 from ...description.sensor import Noise as NoiseSpec
 from ...sensing.noise import GAUSSIAN, Noise
 from ..frames import add_tf_prefix, resolve_frame, stamp_message
-from .image_messages import FLOAT32, UINT16, header, point_field
+from .image_messages import FLOAT32, UINT16, XYZ, cloud_message, header
 from .rays import RayPlugin
 
 _STEP = 22       # bytes of a Velodyne's point, as PointXYZIRT of its drivers
+_FIELDS = (*XYZ, ("intensity", 12, FLOAT32), ("ring", 16, UINT16), ("time", 18, FLOAT32))
 _FURTHEST = float("inf")
 
 
@@ -123,7 +124,7 @@ class Velodyne(Points):
     def _message(self, head: Any, ranges: Any, retro: Any, ns: int) -> Any:
         import numpy as np
 
-        fan, context = self._fan, self.context
+        fan = self._fan
         assert self._directions is not None
         if self._rings is None:
             self._rings = np.repeat(np.arange(fan.rows, dtype=np.uint16), fan.samples)
@@ -139,17 +140,9 @@ class Velodyne(Points):
         points["place"] = np.where(kept, away, np.nan)[order, None] * self._directions[order]
         points["intensity"] = np.where(kept, retro, np.nan)[order]
         points["ring"] = self._rings[order]
-        message = context.message("sensor_msgs/PointCloud2")
-        message.header = head
-        message.width = fan.rows if self._organized else len(order)
-        message.height = fan.samples if self._organized else 1
-        message.fields = [point_field(context, name, offset, kind) for name, offset, kind in (
-            ("x", 0, FLOAT32), ("y", 4, FLOAT32), ("z", 8, FLOAT32), ("intensity", 12, FLOAT32),
-            ("ring", 16, UINT16), ("time", 18, FLOAT32))]
-        message.is_bigendian, message.is_dense = False, not self._organized
-        message.point_step, message.row_step = _STEP, _STEP * message.width
-        message.data = points.tobytes()
-        return message
+        shape = (fan.samples, fan.rows) if self._organized else (1, len(order))
+        return cloud_message(self.context, head, points, shape, _STEP, _FIELDS,
+                             not self._organized)
 
     def _within(self, ranges: Any) -> Any:
         return (ranges > self._near) & (ranges < self._far)

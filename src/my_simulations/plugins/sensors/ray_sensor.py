@@ -11,11 +11,12 @@ from typing import Any, Dict, Type
 from ..base import Plugin
 from ..context import PluginError
 from ..standard_messages import INFRARED, ULTRASOUND, range_message
-from .image_messages import FLOAT32, point_field
+from .image_messages import FLOAT32, XYZ, cloud_message
 from .laser_points import BlockLaser, Laser, Points
 from .rays import RayPlugin
 
 _STEP = 16                      # bytes of a point
+_FIELDS = (*XYZ, ("intensity", 12, FLOAT32))
 
 
 class PointCloudOutput(Points):
@@ -35,14 +36,7 @@ class PointCloudOutput(Points):
         points = np.empty((int(met.sum()), 4), np.float32)
         points[:, :3] = ranges[met, None] * self._directions[met]
         points[:, 3] = np.maximum(retro[met], context.parameters.number("minIntensity", 0.0))
-        message = context.message(self.message_type)
-        message.header, message.height, message.width = head, 1, len(points)
-        message.fields = [point_field(context, name, 4 * number, FLOAT32)
-                          for number, name in enumerate(("x", "y", "z", "intensity"))]
-        message.is_bigendian, message.is_dense = False, True
-        message.point_step, message.row_step = _STEP, _STEP * len(points)
-        message.data = points.tobytes()
-        return message
+        return cloud_message(context, head, points, (1, len(points)), _STEP, _FIELDS, True)
 
 
 class RangeOutput(RayPlugin):
