@@ -8,12 +8,12 @@ from ..errors import CommandError
 from ..resources.package_files import own_directory
 
 
-def folder() -> str:
+def _folder() -> str:
     return os.path.join(own_directory(), "config", "assignments")
 
 
-def names() -> List[str]:
-    return sorted(os.path.splitext(name)[0] for name in os.listdir(folder())
+def shipped_assignments() -> List[str]:
+    return sorted(os.path.splitext(name)[0] for name in os.listdir(_folder())
                   if name.endswith(".yaml"))
 
 
@@ -22,10 +22,10 @@ def shipped_assignment(name: str) -> str:
 
     Raises CommandError: it is neither a path nor the name of a shipped one.
     """
-    found = os.path.join(folder(), f"{name}.yaml")
+    found = os.path.join(_folder(), f"{name}.yaml")
     if not os.path.isfile(name) and os.path.isfile(found):
         return found
     if not os.path.exists(name) and os.path.basename(name) == name and "." not in name:
         raise CommandError(f"there is no assignment {name!r}: it is neither a file nor one of"
-                           f" {', '.join(names())}")
+                           f" {', '.join(shipped_assignments())}")
     return name

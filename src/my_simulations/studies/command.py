@@ -269,9 +269,9 @@ def _show(options: argparse.Namespace, _: Optional[Hook]) -> int:
     return _show_command(launch_command(path), bool(options.write))
 
 
-def _show_command(command: List[str], only_tell: bool) -> int:
+def _show_command(command: List[str], dry_run: bool) -> int:
     text = " ".join(map(shlex.quote, command))
-    if only_tell or not can_launch():
+    if dry_run or not can_launch():
         _print_error("to open it: " + text)
         return 0
     _print_error(text)

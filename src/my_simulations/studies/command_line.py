@@ -41,7 +41,7 @@ def parser() -> argparse.ArgumentParser:
         each.add_argument("dir", metavar="DIR", nargs="?", default=".",
                           help="folder of the results; default: the working directory")
     for each in (run, resume):
-        _add_places(each)
+        _add_runner_options(each)
         each.add_argument("--retry", action="append", choices=STATUSES, default=[],
                           metavar="STATUS", help="run the cases again whose result is STATUS, such"
                           " as crashed or 'timed out'; may be repeated")
@@ -53,8 +53,8 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
-def _add_places(each: argparse.ArgumentParser) -> None:
-    """Options that say where cases run."""
+def _add_runner_options(each: argparse.ArgumentParser) -> None:
+    """Add the options that choose the machines for cases."""
     each.add_argument("--slots", type=int, metavar="N",
                       help="cases that run at a time, on each machine; default: number of"
                       " processors, on Dask that of a worker's threads, on Slurm 1")

@@ -21,8 +21,8 @@ from distributed.scheduler import KilledWorker
 from distributed.security import Security
 
 from ..errors import CommandError
+from .case_output import CaseOutput
 from .cluster_address import TlsFiles
-from .kept import Kept
 from .plan import ALL_CASES, Case, CasePlan, Shard
 from .row import NODE_LOST, Row
 from .row_recorder import Recorder
@@ -38,7 +38,7 @@ _CONNECT_S = 30.0
 _GATHER_S = 10.0   # for the rows of a shard to arrive
 _CONNECTED = "running"  # the status of a client whose scheduler answers
 
-Result = Tuple[Row, Optional[Kept]]
+Result = Tuple[Row, Optional[CaseOutput]]
 
 
 def security_of(files: TlsFiles) -> Security:
@@ -96,7 +96,7 @@ class StudyWorker(WorkerPlugin):
             return []
         found: List[Result] = []
         self._pool.run(self._cases(self._plan, cases),
-                       lambda row, kept: found.append((row, kept)))
+                       lambda row, output: found.append((row, output)))
         return found
 
     def _cases(self, plan: CasePlan, wanted: List[Tuple[int, str]]) -> Iterator[Case]:
@@ -326,16 +326,16 @@ class DaskRunner:
             raise CommandError(f"worker {flight.worker}: {kind}{fault}") from None
         self._remove(flight)
         done = set()
-        for row, kept in results:
-            self._add_row(row, kept)
+        for row, output in results:
+            self._add_row(row, output)
             done.add(row.case)
         self._again += [case for case in flight.cases if case.id not in done]
         node = self._nodes.get(flight.worker)
         if node is not None:
             node.done += len(results)
 
-    def _add_row(self, row: Row, kept: Optional[Kept]) -> None:
-        self._recorder.add(row, kept)
+    def _add_row(self, row: Row, output: Optional[CaseOutput]) -> None:
+        self._recorder.add(row, output)
         self._left -= 1
         self._told(row)
 

@@ -1,4 +1,4 @@
-"""Records rows, and what is kept of their cases beside them."""
+"""Records rows, and the output of their cases in files beside them."""
 from __future__ import annotations
 
 import os
@@ -10,8 +10,8 @@ from typing import Dict, List, Optional
 
 import numpy as np
 
+from .case_output import CaseOutput, ScenarioFiles
 from .journal import Journal
-from .kept import Kept, ScenarioFiles
 from .replacing import replacement_file
 from .row import Row
 
@@ -24,7 +24,7 @@ _LONGEST_S = 10.0
 
 
 class Recorder:
-    """Writes rows to the journal, and before them what is kept of their cases.
+    """Writes rows to the journal, and before them the output of their cases.
 
     Trajectories go into .npz files of several cases each, files of a scenario into a folder of its
     own, `scenarios/ID`. A row with a trajectory is written once the file with it is complete, so
@@ -47,19 +47,19 @@ class Recorder:
         self._since = 0.0
         self._number = _last_number(folder, prefix)
 
-    def add(self, row: Row, kept: Optional[Kept]) -> None:
-        """Keep a row, and what is kept of its case."""
-        if isinstance(kept, ScenarioFiles):
-            self._write_files(row.case, kept)
-            kept = None
+    def add(self, row: Row, output: Optional[CaseOutput]) -> None:
+        """Record a row and the output of its case."""
+        if isinstance(output, ScenarioFiles):
+            self._write_files(row.case, output)
+            output = None
         with self._lock:
-            if kept is None:
+            if output is None:
                 self._journal.append([row])
                 return
             if not self._rows:
                 self._since = time.monotonic()
             self._rows.append(row)
-            arrays = kept.arrays(row.case)
+            arrays = output.arrays(row.case)
             self._arrays.update(arrays)
             self._bytes += sum(array.nbytes for array in arrays.values())
             if (self._bytes > _MOST_BYTES or len(self._rows) >= _MOST_CASES
@@ -67,15 +67,15 @@ class Recorder:
                 self._flush()
 
     def close(self) -> None:
-        """Write what is kept."""
+        """Write the trajectories."""
         with self._lock:
             self._flush()
 
-    def _write_files(self, case: str, kept: ScenarioFiles) -> None:
+    def _write_files(self, case: str, output: ScenarioFiles) -> None:
         folder = os.path.join(self._folder, SCENARIOS, case)
         shutil.rmtree(folder, ignore_errors=True)  # of a former run of this case
         os.makedirs(folder, exist_ok=True)
-        for name, content in kept.files.items():
+        for name, content in output.files.items():
             with open(os.path.join(folder, name), "wb") as stream:
                 stream.write(content)
 

@@ -16,8 +16,8 @@ from ..child_process import signal_name, wait_or_kill
 from ..errors import CommandError, InputError
 from . import scenario_process
 from .attempts import repeat_after_crash
+from .case_output import ScenarioFiles
 from .junit import results_below
-from .kept import ScenarioFiles
 from .plan import Case, CasePlan
 from .row import CRASHED, FAILED, OK, REFUSED, TIMED_OUT, Row
 from .scenario_files import SCENARIO, declared_arguments, scenario_path
@@ -30,11 +30,11 @@ _MOST_BYTES = 1 << 20    # of a log that is kept
 _MOST_LOGS = 20
 _LONGEST_RECORDING = 64 << 20   # bytes
 RECORDING = "state.log"
-"""File of what the simulator recorded, of a scenario that is not ok."""
+"""The recording of the simulator, stored for scenarios that are not ok."""
 
 
 def require_ros() -> None:
-    """Raise CommandError unless rostest is there and this shell knows its packages."""
+    """Raise CommandError unless rostest is installed and the shell has a ROS environment."""
     if shutil.which("rostest") is None or not os.environ.get("ROS_PACKAGE_PATH"):
         raise CommandError("scenarios are run by rostest, which needs ROS: source the setup.bash of"
                            " your workspace; rostest must be installed")
@@ -84,7 +84,7 @@ class ScenarioSlot:
         self._stop = stop
 
     def close(self) -> None:
-        """Nothing is kept from one scenario to the next."""
+        """Do nothing: scenarios share no state."""
 
     def enforce_limits(self) -> None:
         """Do nothing: the process of the scenario enforces its limits."""
@@ -97,14 +97,14 @@ class ScenarioSlot:
         def attempt(number: int) -> Tuple[Row, Optional[ScenarioFiles]]:
             row = Row(OK, case.id, case.index, case.seed, dict(case.settings), attempt=number,
                       processor=self._processor)
-            kept: Optional[ScenarioFiles] = None
+            output: Optional[ScenarioFiles] = None
             try:
-                kept = self._attempt(case, row)
+                output = self._attempt(case, row)
             except InputError as fault:
                 row.status, row.issue = REFUSED, str(fault.first)
             except CommandError as fault:
                 row.status, row.issue = REFUSED, str(fault)
-            return row, kept
+            return row, output
         return repeat_after_crash(self._plan.study.limits.attempts, attempt)
 
     def _attempt(self, case: Case, row: Row) -> ScenarioFiles:
@@ -166,7 +166,7 @@ def _last_line(folder: str) -> str:
 
 
 def _files(folder: str, junit: bytes, with_logs: bool) -> Dict[str, bytes]:
-    """What is kept: results and output; logs of nodes where something went wrong."""
+    """Return results and output; with `with_logs` the recording and the logs of nodes, too."""
     found = {"junit.xml": junit, "output.txt": _end_of(os.path.join(folder, "output.txt"))}
     if with_logs:
         recording = os.path.join(folder, "recording", RECORDING)

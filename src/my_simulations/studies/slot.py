@@ -1,4 +1,4 @@
-"""Runs cases one after the other in an engine that is kept from one to the next."""
+"""Runs cases one after the other in the same engine."""
 from __future__ import annotations
 
 import hashlib
@@ -19,26 +19,26 @@ from ..python_api.kept_files import FileCache
 from ..python_api.world_choice import WorldChoice
 from ..simulator.watchdog import process_time, resident_bytes
 from .attempts import repeat_after_crash
+from .case_output import CaseTrajectory
 from .case_world import CASE_ROBOTS, world_choice_of
-from .kept import CaseTrajectory
 from .plan import Case, CasePlan
 from .row import CRASHED, DIVERGED, FAILED, OK, REFUSED, TIMED_OUT, TOO_LARGE, Row
 from .sampling import SignalReader
 from .study import Study
 
-_FARTHEST = 1e9  # m: Bullet stops bodies whose bounds it cannot compute, without a word
-_SLICE = 1000  # steps between two looks at `stop`
+_FARTHEST = 1e9  # m: Bullet stops bodies whose bounds it cannot compute, without a message
+_SLICE = 1000  # steps between two checks of `stop`
 
 Hook = Callable[[Case, int, OpenWorld], None]
 """Called before a case begins to move, with its attempt and its world."""
 
 
 class CaseStoppedError(SimulationError):
-    """The study was told to stop during a case."""
+    """The study was stopped during a case."""
 
 
 class CaseRefusedError(CommandError):
-    """A case that cannot be run as the study says."""
+    """A case that cannot be run with the settings of the study."""
 
 
 class NoRestartEngine(ProcessEngine):
@@ -209,8 +209,8 @@ class Slot:
                                f" {world.step_size:g} s: there is no step to make")
         signals = [signal for _, expression in expressions for signal in expression.signals]
         run = _Run(world, SignalReader(world, signals, case.settings), steps, [], [])
-        self._walk(run, any(expression.sampled for _, expression in expressions))
-        # Its answer comes after all that the engine had to tell, such as a diverged state.
+        self._make_steps(run, any(expression.sampled for _, expression in expressions))
+        # The reply follows all events of the engine, such as a diverged state.
         world.contacts()
         samples = run.reader.samples()
         row.step, row.hash = steps, final_hash(world)
@@ -261,13 +261,13 @@ class Slot:
             self._began = 0.0
         return engine
 
-    def _walk(self, run: _Run, sampled: bool) -> None:
+    def _make_steps(self, run: _Run, sampled: bool) -> None:
         """Make all steps; take samples and frames on the way."""
         study, world = self._study, run.world
         sample = _interval(study.sample, world) if sampled else run.steps
         frame = _interval(study.trajectory.every, world) if study.trajectory else 0
         run.reader.add_sample()
-        self._frame(run)
+        self._add_frame(run)
         done = 0
         while done < run.steps:
             ends = [run.steps, done + _SLICE, done + sample - done % sample]
@@ -280,9 +280,9 @@ class Slot:
             if done % sample == 0 or done == run.steps:
                 run.reader.add_sample()
             if frame and (done % frame == 0 or done == run.steps):
-                self._frame(run)
+                self._add_frame(run)
 
-    def _frame(self, run: _Run) -> None:
+    def _add_frame(self, run: _Run) -> None:
         wanted = self._study.trajectory
         if wanted is None:
             return
@@ -308,7 +308,7 @@ def final_hash(world: OpenWorld) -> str:
 
 
 def _divergence(world: OpenWorld) -> str:
-    """What became infinite, or went where no world is; "" for nothing."""
+    """Return the issue of a diverged state or of a link that is too far away; "" for none."""
     for issue in world.issues:
         if issue.code == "state-diverged":
             return issue.message

@@ -9,7 +9,7 @@ from typing import Callable, Iterator, List, Optional, Protocol, Tuple
 
 from ..python_api.kept_files import FileCache
 from ..resources.resolver import Resolver
-from .kept import Kept
+from .case_output import CaseOutput
 from .plan import Case, CasePlan
 from .provenance import processor_type
 from .row import Row
@@ -20,20 +20,20 @@ _LOOK_S = 0.25
 _KEPT_FILES = 16  # worlds, models and lists of objects
 _IDLE_S = 60.0  # after which unused engines are ended
 
-Take = Callable[[Row, Optional[Kept]], None]
+Take = Callable[[Row, Optional[CaseOutput]], None]
 
 
 class CaseSlot(Protocol):
     """Runs one case at a time, for one thread."""
 
-    def run(self, case: Case) -> Tuple[Row, Optional[Kept]]:
+    def run(self, case: Case) -> Tuple[Row, Optional[CaseOutput]]:
         """Run a case. Raises CaseStoppedError if `stop` was set."""
 
     def enforce_limits(self) -> None:
         """End a case that has used up a limit; called from another thread."""
 
     def close(self) -> None:
-        """End what is kept between cases."""
+        """Close the state that is shared between cases."""
 
 
 class SlotPool:

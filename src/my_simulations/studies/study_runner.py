@@ -5,7 +5,7 @@ import threading
 import time
 from typing import Callable, Dict, Iterator, List, Optional, Set
 
-from .kept import Kept
+from .case_output import CaseOutput
 from .plan import ALL_CASES, Case, CasePlan, Shard, number_of
 from .row import Row
 from .row_recorder import Recorder
@@ -56,8 +56,8 @@ class StudyRunner:
             pool.close()
             self._recorder.close()
 
-    def _add_row(self, row: Row, kept: Optional[Kept]) -> None:
-        self._recorder.add(row, kept)
+    def _add_row(self, row: Row, output: Optional[CaseOutput]) -> None:
+        self._recorder.add(row, output)
         with self._ready:
             self._told(row)
 

@@ -96,7 +96,7 @@ def write_parquet(path: str, study: Study, paths: Sequence[str]) -> int:
     with replacement_file(path) as part, parquet.ParquetWriter(part, schema) as writer:
         group: List[Dict[str, Any]] = []
         for row in rows_in_order(paths):
-            group.append({name: _of_kind(value, kinds[name])
+            group.append({name: _convert_cell(value, kinds[name])
                           for name, value in cells(row).items() if name in kinds})
             count += 1
             if len(group) == _GROUP:
@@ -118,8 +118,8 @@ def _kinds(study: Study) -> Dict[str, type]:
     return {name: kinds.get(name, str) for name in columns_of(study)}
 
 
-def _of_kind(value: Any, kind: type) -> Any:
-    """A cell as a column takes it; None if it is of another kind."""
+def _convert_cell(value: Any, kind: type) -> Any:
+    """Convert a cell to the type of its column; None if that is not possible."""
     if kind is str:
         return str(value)
     if kind is float and type(value) is int:

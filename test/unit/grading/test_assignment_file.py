@@ -17,7 +17,7 @@ from my_simulations.grading.assignment import (
     ValidFile,
 )
 from my_simulations.grading.assignment_file import read_assignment
-from my_simulations.grading.shipped import names, shipped_assignment
+from my_simulations.grading.shipped import shipped_assignment, shipped_assignments
 from my_simulations.grading.world_run import world_choice_of
 
 WHOLE = """lab: lab1
@@ -245,7 +245,7 @@ def test_a_folder_of_submissions_may_have_the_name_of_a_shipped_assignment(tmp_p
     assert shipped_assignment("drive_square") == "drive_square"
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", shipped_assignments())
 def test_shipped_assignments_are_valid(name):
     found, issues = read_assignment(shipped_assignment(name))
     assert issues == [] and found.lab == name and found.points > 0

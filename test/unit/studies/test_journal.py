@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from my_simulations.errors import CommandError
+from my_simulations.studies.case_output import CaseTrajectory
 from my_simulations.studies.journal import (
     Journal,
     finished_cases,
@@ -17,7 +18,6 @@ from my_simulations.studies.journal import (
     rows,
     statuses,
 )
-from my_simulations.studies.kept import CaseTrajectory
 from my_simulations.studies.row import CRASHED, OK, TIMED_OUT, Row
 from my_simulations.studies.row_recorder import Recorder
 from my_simulations.studies.table import rows_in_order

@@ -1,8 +1,8 @@
 """The messages between the node and the process of a plugin.
 
-The node sends a `Call`; the process answers with `Done` or `Raised`, and may send an `Query`
+The node sends a `Call`; the process answers with `Done` or `Raised`, and may send a `Query`
 before, which the node answers with `Value` or `QueryFailed`. Calls nest: a function that the node
-calls to answer an `Query` belongs to the plugin, too.
+calls to answer a `Query` belongs to the plugin, too.
 """
 from __future__ import annotations
 
@@ -106,13 +106,13 @@ class Query(NamedTuple):
 
 
 class Value(NamedTuple):
-    """The answer to an `Query`."""
+    """The answer to a `Query`."""
 
     value: Any
 
 
 class QueryFailed(NamedTuple):
-    """The exception that answers an `Query`."""
+    """The exception that answers a `Query`."""
 
     fault: Exception
 
@@ -138,19 +138,19 @@ class Raised(NamedTuple):
 
 
 class Function(NamedTuple):
-    """Stands for a function of the plugin among the arguments of an `Query`."""
+    """Stands for a function of the plugin among the arguments of a `Query`."""
 
     number: int
 
 
 class Reference(NamedTuple):
-    """Stands for a handle among the arguments of an `Query`."""
+    """Stands for a handle among the arguments of a `Query`."""
 
     number: int
 
 
 class HandleMade(NamedTuple):
-    """A handle as the value of an `Query`, with what never changes of it, and its state."""
+    """A handle as the value of a `Query`, with what never changes of it, and its state."""
 
     number: int
     kind: str

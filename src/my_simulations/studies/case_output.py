@@ -34,4 +34,4 @@ class ScenarioFiles:
     files: Dict[str, bytes]
 
 
-Kept = Union[CaseTrajectory, ScenarioFiles]
+CaseOutput = Union[CaseTrajectory, ScenarioFiles]
