@@ -16,12 +16,15 @@ ZERO3: Vec3 = (0.0, 0.0, 0.0)
 IDENTITY_QUAT: Quat = (0.0, 0.0, 0.0, 1.0)
 
 
+def is_number(value: Any) -> bool:
+    """Whether a value of JSON, YAML or the parameter server is a number; true and false are not."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
 def is_finite_number(value: Any) -> bool:
     """Whether a value of JSON or YAML is a finite number; integers that no double holds are not."""
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        return False
     try:
-        return math.isfinite(value)
+        return is_number(value) and math.isfinite(value)
     except OverflowError:
         return False
 

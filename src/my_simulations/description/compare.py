@@ -6,7 +6,7 @@ import re
 from dataclasses import fields, is_dataclass
 from typing import Any, Iterator, List, Tuple
 
-from ..geometry import Pose
+from ..geometry import Pose, is_number
 
 BUILT_IN = "file://media/materials/scripts/gazebo.material"
 """URI of the script of Gazebo's own materials, which are built in."""
@@ -41,7 +41,7 @@ def _compare(a: Any, b: Any, tolerance: float, path: str) -> Iterator[str]:
             yield f"{path}: {len(a)} entries, {len(b)} entries"
         for n, (one, other) in enumerate(zip(a, b)):
             yield from _compare(one, other, tolerance, f"{path}[{getattr(one, 'name', n)}]")
-    elif _is_number(a) and _is_number(b):
+    elif is_number(a) and is_number(b):
         if not (a == b or math.isclose(a, b, rel_tol=tolerance, abs_tol=tolerance)):
             yield f"{path}: {a!r}, {b!r}"
     elif a != b:
@@ -64,10 +64,6 @@ def _field(name: str, a: Any, b: Any, tolerance: float, path: str) -> Iterator[s
     elif name == "script_uris":
         a, b = ([uri for uri in uris if uri != BUILT_IN] for uris in (a, b))
     yield from _compare(a, b, tolerance, path)
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
 def _poses(a: Pose, b: Pose, tolerance: float, path: str) -> Iterator[str]:

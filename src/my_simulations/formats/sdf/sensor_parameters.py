@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Iterator, List, Mapping, Sequence, Tuple
 
 from ...description.sensor import Camera, Sensor
-from ...geometry import Pose
+from ...geometry import Pose, is_number
 from ..xml.binding import fill
 from ..xml.source import Source
 from ..xml.tables import Entry, Group, Table, Value
@@ -125,19 +125,15 @@ def _text(kind: Kind, value: Any) -> str:
         return kind.format(value)
     if name == "text" and isinstance(value, str):
         return value
-    if name in ("integer", "number") and _is_number(value):
+    if name in ("integer", "number") and is_number(value):
         return kind.format(int(value) if name == "integer" and value == int(value) else value)
-    if name == "vector" and isinstance(value, list) and all(map(_is_number, value)):
+    if name == "vector" and isinstance(value, list) and all(map(is_number, value)):
         return kind.format(tuple(map(float, value)))
     if name == "pose" and isinstance(value, list) and len(value) == 7 and all(
-            map(_is_number, value)):
+            map(is_number, value)):
         x, y, z, *turn = map(float, value)
         return kind.format(Pose((x, y, z), (turn[0], turn[1], turn[2], turn[3])))
     raise ValueError(f"{value!r:.60} is not a value of kind {name}")
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
 def _set_text(element: Any, path: str, text: str) -> None:

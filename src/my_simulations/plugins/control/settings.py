@@ -4,6 +4,7 @@ from __future__ import annotations
 from typing import Any, Callable, Dict, List, Optional, Tuple, Union
 
 from ...engine.drive_commands import PidGains
+from ...geometry import is_number
 from ..context import Context, PluginError
 from ..reconfigure import Option, Reconfigure, Value
 
@@ -44,8 +45,7 @@ class Settings:
 
     def number(self, path: str, default: Optional[float] = None) -> float:
         """Return a number; the parameter is required if there is no default."""
-        return float(self._read(path, default, lambda value: not isinstance(
-            value, bool) and isinstance(value, (int, float)), "a number"))
+        return float(self._read(path, default, is_number, "a number"))
 
     def flag(self, path: str, default: bool) -> bool:
         return bool(self._read(path, default, lambda value: isinstance(value, int),

@@ -14,7 +14,7 @@ from dataclasses import replace
 from typing import Any, Deque, List, NamedTuple, Optional, Sequence, Tuple
 
 from ...engine.wrench_laws import BodyDrag, Wrench, clamped_vector
-from ...geometry import Vec3
+from ...geometry import Vec3, is_number
 from ..base import Plugin
 from ..call_slot import CallSlot
 from ..context import Context, PluginError
@@ -281,7 +281,7 @@ def model_parameters(context: Context, namespace: str, names: List[str]) -> List
     found = []
     for name in names:
         value = context.parameter(f"{namespace}/{name}", None)
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
+        if not is_number(value):
             raise PluginError(f"parameter {namespace}/{name} must be a number, it is {value!r}: is"
                               " the parameter file of the model loaded?")
         found.append(float(value))
