@@ -225,7 +225,7 @@ def _wheel_at(x: float, y: float, loads, gap: float = 0.0, tilt: float = 0.0):
                  load, 0, (1.0, 0.0, 0.0), 0, (0.0, 1.0, 0.0))
                 for n, (side, load) in enumerate(zip((-0.05, 0.05), loads))]
     moves = Motion((x, y, 0.1), quat_from_rpy(tilt, 0.0, 0.0), (0, 0, 0), (0, 0, 0))
-    return moves, (0.0, 1.0, 0.0), contacts
+    return moves, (0.0, 1.0, 0.0), (), contacts
 
 
 CORNERS = [(0.3, 0.3), (0.3, -0.3), (-0.3, 0.3), (-0.3, -0.3)]
@@ -234,20 +234,47 @@ CORNERS = [(0.3, 0.3), (0.3, -0.3), (-0.3, 0.3), (-0.3, -0.3)]
 def test_edges_share_with_the_same_sum_and_the_same_moments():
     wheels = [_wheel_at(*at, loads) for at, loads in zip(
         CORNERS, [(20.0, 0.0), (30.0, 0.0), (0.0, 25.0), (0.0, 35.0)])]
-    before = [(contact[5], contact[9]) for _, _, contacts in wheels for contact in contacts]
+    _check_sums(wheels, 8)
+
+
+def _check_sums(wheels, count: int) -> None:
+    """The loads of `count` edges are positive, with the sum and the moments of Bullet's."""
+    before = [(contact[5], contact[9]) for wheel in wheels for contact in wheel[3]]
     after = [(contact[5], load) for contacts, loads in distribute_loads(wheels)
              for contact, load in zip(contacts, loads)]
-    assert len(after) == 8 and min(load for _, load in after) > 0.0
+    assert len(after) == count and min(load for _, load in after) > 0.0
     for weight in (lambda at: 1.0, lambda at: at[0], lambda at: at[1]):
         assert sum(weight(at) * load for at, load in after) == pytest.approx(
             sum(weight(at) * load for at, load in before))
 
 
+def test_edges_that_would_be_pulled_down_carry_nothing():
+    _check_sums([_wheel_at(*at, loads) for at, loads in zip(
+        CORNERS, [(50.0, 0.0), (20.0, 0.0), (9.0, 0.0), (0.1, 0.0)])], 6)
+
+
+def _box_at(x: float, corners, loads):
+    """A box of 0.2 m and 0.1 m for `distribute_loads`, with contacts at some of its corners."""
+    moves = Motion((x, 0.0, 0.05), (0.0, 0.0, 0.0, 1.0), (0, 0, 0), (0, 0, 0))
+    contacts = [(0, 1, 0, 0, -1, (x + a, b, 0.0), (x + a, b, 0.0), (0.0, 0.0, 1.0), 0.0, load)
+                for (a, b), load in zip(corners, loads)]
+    return moves, None, tuple((a, b, c) for a in (-0.1, 0.1) for b in (-0.05, 0.05)
+                              for c in (-0.05, 0.05)), contacts
+
+
+def test_corners_of_a_box_that_the_solver_dropped_carry_a_load():
+    wheels = [_wheel_at(0.3, y, loads) for y, loads in ((0.3, (11.0, 0.0)), (-0.3, (0.0, 13.0)))]
+    wheels.append(_box_at(-0.3, [(0.1, -0.05), (-0.1, 0.05)], (6.0, 0.5)))
+    _check_sums(wheels, 8)
+    contacts, _ = distribute_loads(wheels)[2]
+    assert sorted(tuple(round(part, 9) for part in contact[5]) for contact in contacts) == [
+        (-0.4, -0.05, 0.0), (-0.4, 0.05, 0.0), (-0.2, -0.05, 0.0), (-0.2, 0.05, 0.0)]
+
+
 @pytest.mark.parametrize("wheels", [
     [_wheel_at(*at, (10.0, 0.0), tilt=0.1) for at in CORNERS],
-    [_wheel_at(*at, loads) for at, loads in zip(CORNERS, [(99.0, 0.0), *[(0.1, 0.0)] * 3])],
     [_wheel_at(*at, (10.0, 0.0), gap=1e-3) for at in CORNERS[::3]][:1]])
-def test_loads_stay_where_wheels_are_tilted_or_an_edge_would_be_pulled_down(wheels):
-    for (contacts, loads), (_, _, all_of_it) in zip(distribute_loads(wheels), wheels):
-        assert loads == [contact[9] for contact in all_of_it if contact[9] > 0.0]
+def test_loads_stay_where_wheels_are_tilted_or_have_one_edge(wheels):
+    for (contacts, loads), wheel in zip(distribute_loads(wheels), wheels):
+        assert loads == [contact[9] for contact in wheel[3] if contact[9] > 0.0]
         assert len(contacts) == 1

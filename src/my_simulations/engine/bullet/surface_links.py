@@ -14,7 +14,7 @@ from ...geometry import Vec3, add, conjugate, cross, dot, norm, rotate, scale, s
 from .bodies import Axis, Body, Part
 from .contact_points import NORMAL, POINT, ContactPoint, LinkKey
 from .contact_slip import direction_across, load_centre
-from .edge_loads import axle_of
+from .edge_loads import Corners, axle_of, corners_of
 from .extra_surfaces import first_direction
 from .link_states import AT_REST, Motion, read_com_pose
 from .mass_matrix import MassMatrix
@@ -64,6 +64,7 @@ class SurfaceLink:
         total: mass of its body, kg.
         first: direction of the first coefficients, in PyBullet's frame, of length 1; or None.
         axle: of a wheel (`edge_loads`), or None.
+        corners: of a box, m, in PyBullet's frame; empty for other shapes.
         mus, slips: along and across `first`; slips in m/(N s).
         joint: row of its joint; -1 for none.
         hinge: its joint if that is revolute.
@@ -75,6 +76,7 @@ class SurfaceLink:
     total: float
     first: Optional[Vec3]
     axle: Optional[Vec3]
+    corners: Corners
     mus: Tuple[float, float]
     slips: Tuple[float, float]
     joint: int
@@ -179,8 +181,8 @@ def surface_links(body: Body) -> Dict[LinkKey, SurfaceLink]:
         mu, mu2 = surface.mu, surface.mu2 if is_direction_dependent(surface) else surface.mu
         found[uid, part.index] = SurfaceLink(
             body, uid, part, total, first, axle_of(part, part.link) if axis is not None else None,
-            (max(_LEAST_MU, mu), max(_LEAST_MU, mu2)), slips, -1 if axis is None else axis.row,
-            None if axis is None else _hinge_of(uid, axis))
+            corners_of(part, part.link), (max(_LEAST_MU, mu), max(_LEAST_MU, mu2)), slips,
+            -1 if axis is None else axis.row, None if axis is None else _hinge_of(uid, axis))
     return found
 
 

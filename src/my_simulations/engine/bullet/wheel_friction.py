@@ -14,11 +14,11 @@ friction back.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Callable, Dict, Iterable, Iterator, List, NamedTuple, Optional, Set, Tuple
+from typing import Callable, Dict, Iterable, Iterator, List, NamedTuple, Set, Tuple
 
 import pybullet
 
-from ...geometry import ZERO3, Vec3, norm, scale, subtract
+from ...geometry import ZERO3, Vec3, norm, scale
 from ..body_plan import BASE
 from ..drive_commands import WheelSlip
 from .bodies import Axis, Body
@@ -33,10 +33,11 @@ from .contact_points import (
     LinkKey,
 )
 from .contact_slip import mean_velocity
-from .edge_loads import NEAR, Loads, distribute_loads, loaded_contacts
+from .edge_loads import NEAR, loaded_contacts
 from .extra_surfaces import anisotropy
 from .link_friction import Drive, link_friction
-from .link_states import Motion, child_states, motion, motions
+from .link_loads import Reading, read_loads, with_other
+from .link_states import Motion, child_states, motion
 from .step_helper import FAR, StepHelper, next_multiple
 from .surface_links import ContactMobility, SurfaceLink, contact_mobility, surface_links
 from .wheel_edges import wheel_edges
@@ -49,6 +50,8 @@ _SLIDES = 2e-3             # m/s of slip: links at rest stay below it
 _RESTS = 5e-4              # m/s of slip: a link below it is at rest
 _LASTING = 0.02            # of the load: with more lasting friction (B), Bullet's is not restored
 _REST_STEPS = 32           # steps at rest until Bullet's friction is restored
+_GRIP_SHARE = 0.4          # of mu g: a wheel that accelerates less does not slide
+_IMPACT_SHARE = 0.1        # of the load: a larger change is an impact
 _PERIOD = 4e-3  # s between two computations of the friction on a link that goes on sliding
 _REMAINING = (1e-3, 1e-3)  # shares of Bullet's friction that stay
 
@@ -78,12 +81,14 @@ class _Slide:
         biases: B of `link_friction` by the other link, N, world axes.
         acting: fields of `ActingFriction`, by contact.
         rest_steps: steps for which it has not slid.
+        load: N, at its last computation.
         steady: whether its friction needs no update for some steps.
     """
 
     biases: Dict[LinkKey, Vec3] = field(default_factory=dict)
     acting: List[Tuple[Vec3, Vec3, float, LinkKey]] = field(default_factory=list)
     rest_steps: int = 0
+    load: float = 0.0
     steady: bool = False
 
 
@@ -112,7 +117,7 @@ class WheelFriction(StepHelper):
         self._next: Dict[int, int] = {}                  # next computation, step count, by body
         self._slipping: Set[LinkKey] = set()
         self._fixed: Set[int] = set()                    # bodies with a fixed base
-        self._readings: Dict[LinkKey, Tuple[Motion, Loads]] = {}   # for the next step
+        self._readings: Dict[LinkKey, Reading] = {}   # for the next step
         self._mobilities: Dict[LinkKey, ContactMobility] = {}
         self._rows: Dict[int, List[LinkKey]] = {}
         self._axes: Dict[int, Tuple[Body, Axis]] = {}
@@ -186,15 +191,14 @@ class WheelFriction(StepHelper):
 
     # -- readings ----------------------------------------------------------------------------------
 
-    def acting_at(self, uid: int, index: int, at: Vec3, other: LinkKey,
-                  ) -> Optional[ActingFriction]:
-        """Return the friction besides Bullet's in the last step by another link near a place.
+    def acting(self) -> Iterator[Tuple[LinkKey, ActingFriction]]:
+        """Yield each link with friction besides Bullet's in the last step, and that friction.
 
-        None for none. Both links have moved on if it was computed some steps ago.
+        Links have moved on if it was computed some steps ago.
         """
-        slide = self._slides.get((uid, index), _Slide())
-        near = [ActingFriction(*each) for each in slide.acting if each[3] == other]
-        return min(near, key=lambda each: norm(subtract(each.at, at))) if near else None
+        for key, slide in self._slides.items():
+            for each in slide.acting:
+                yield key, ActingFriction(*each)
 
     def forces_on(self, uid: int) -> Iterator[Tuple[int, Vec3, Vec3]]:
         """Yield the friction on a body in the last step: link index, force, point; world axes."""
@@ -239,7 +243,10 @@ class WheelFriction(StepHelper):
                 if seldom or uid not in self._fixed:
                     self._find_slides(uid, wheels)
         due = {uid for uid, _ in self._slides if self._next.get(uid, step + 1) <= step + 1}
-        self._readings.update(self._read_loads(due) if due else {})
+        for uid in sorted(due):
+            links = {key[1]: self._links[key] for key in self._slides if key[0] == uid}
+            self._readings.update(((uid, index), reading) for index, reading in read_loads(
+                uid, links, self._slipping).items())
 
     def _compute(self, step: int, dt: float, gravity: Vec3) -> None:
         """Compute the friction that is due, for the efforts of the step that begins at `step`."""
@@ -248,7 +255,12 @@ class WheelFriction(StepHelper):
         for wheel in self._slip_commands.values():
             self._set_slip(wheel)
         weight, later = norm(gravity), next_multiple(step + 1, max(1, int(_PERIOD / dt)))
-        unsteady = {uid for uid, index in self._readings if not self._slides[uid, index].steady}
+        unsteady: Set[int] = set()
+        for key, (_, (_, loads)) in self._readings.items():
+            slide, load = self._slides[key], sum(loads)
+            if not slide.steady or abs(load - slide.load) > _IMPACT_SHARE * slide.load:
+                unsteady.add(key[0])
+            slide.load = load
         for uid in {uid for uid, _ in self._readings}:
             self._next[uid] = step + 1 if uid in unsteady else later
         for key, (moves, loads) in list(self._readings.items()):
@@ -256,20 +268,29 @@ class WheelFriction(StepHelper):
         self._readings.clear()
         self._restore_at_rest()
 
-    def _find_slides(self, uid: int, wheels: Dict[int, SurfaceLink]) -> None:
-        """Replace Bullet's friction on the links of a body that slide on static bodies."""
+    def _find_slides(self, uid: int, links: Dict[int, SurfaceLink]) -> None:
+        """Replace Bullet's friction on the links of a body that slide on static bodies.
+
+        If a wheel slides, on all wheels: a base with different friction on its wheels would turn.
+        """
         found: Dict[int, Contacts] = {}
         for contact in pybullet.getContactPoints(bodyA=uid):
-            if contact[LINK] in wheels and contact[DISTANCE] < NEAR:
+            if contact[LINK] in links and contact[DISTANCE] < NEAR and (
+                    (uid, contact[LINK]) not in self._slides):
                 found.setdefault(contact[LINK], []).append(contact)
+        slides: Set[int] = set()
         for index, near in found.items():
             contacts, loads = loaded_contacts(near)
-            if contacts and (uid, index) not in self._slides and not self._touches_others(contacts):
+            if contacts and not self._touches_others(contacts):
                 moves = motion(uid, index)
-                edges = wheel_edges(wheels[index].axle, moves, near)
+                edges = wheel_edges(links[index].axle, moves, near)
                 if _SLIDES < max(norm(mean_velocity(moves, contacts, loads)),
                                  0.0 if edges is None else edges.slip):
-                    self._replace_friction((uid, index))
+                    slides.add(index)
+        if any(links[index].axle is not None for index in slides):
+            slides.update(index for index in found if links[index].axle is not None)
+        for index in sorted(slides):
+            self._replace_friction((uid, index))
 
     def _replace_if_driven(self, uid: int, gain: float) -> None:
         """Replace Bullet's friction on wheels if one cannot follow its motor without sliding.
@@ -283,7 +304,7 @@ class WheelFriction(StepHelper):
             return
         if any(link.axle is not None and abs(
                 self._rate(link.joint) - pybullet.getJointState(uid, index)[1]) * link.radius
-                > min(1.0, link.mus[0]) * gain for index, link in wheels.items()):
+                > _GRIP_SHARE * min(1.0, link.mus[0]) * gain for index, link in wheels.items()):
             for index in (*wheels, *self._jointless.get(uid, ())):
                 if (uid, index) not in self._slides:
                     self._replace_friction((uid, index))
@@ -291,58 +312,28 @@ class WheelFriction(StepHelper):
     def _touches_others(self, contacts: Contacts) -> bool:
         return not self._floors.issuperset([contact[OTHER_BODY] for contact in contacts])
 
-    def _read_loads(self, due: Set[int]) -> Dict[LinkKey, Tuple[Motion, Loads]]:
-        """Return motion and loads of each sliding link of the bodies in `due`."""
-        bodies: Dict[int, List[int]] = {}
-        for uid, index in self._slides:
-            if uid in due:
-                bodies.setdefault(uid, []).append(index)
-        found: Dict[LinkKey, Tuple[Motion, Loads]] = {}
-        for uid, indices in bodies.items():
-            rows: List[Tuple[Motion, Optional[Vec3], Contacts]] = []
-            keys: List[LinkKey] = []
-            children = [index for index in indices if index != BASE]
-            read = dict(zip(children, motions(uid, children)))
-            touching: Dict[int, Contacts] = {index: [] for index in indices}
-            for contact in pybullet.getContactPoints(bodyA=uid):
-                if contact[LINK] in touching:
-                    touching[contact[LINK]].append(contact)
-            for index, contacts in touching.items():
-                moves = read[index] if index in read else motion(uid, index)
-                key = (uid, index)
-                if key in self._slipping:
-                    found[key] = moves, loaded_contacts(contacts)
-                else:
-                    keys.append(key)
-                    rows.append((moves, self._links[key].axle, contacts))
-            shared_loads = (distribute_loads(rows) if len(rows) > 1
-                            else [loaded_contacts(row[2]) for row in rows])
-            for key, row, loads in zip(keys, rows, shared_loads):
-                found[key] = row[0], loads
-        return found
-
     def _update_friction(self, key: LinkKey, moves: Motion, contacts: Contacts, loads: List[float],
                step: int, dt: float, weight: float) -> None:
         """Compute the friction on a link from count `step` to its next computation."""
         slide, slips, steps = self._slides[key], key in self._slipping, self._next[key[0]] - step
+        link = self._links[key]
+        slide.rest_steps += steps
+        biases, slide.biases, slide.acting = slide.biases, {}, []
+        if not contacts:   # a wheel can land in the next step; rollers of Mecanum wheels do
+            slide.steady = not slips and link.joint < 0
+            return
         if not slips and self._touches_others(contacts):
             self._restore_friction(key)
             return
-        link = self._links[key]
-        slide.acting = []
-        # A wheel without contacts can land in the next step; rollers of Mecanum wheels do.
-        slide.steady = not slips and (bool(contacts) or link.joint < 0)
-        slide.rest_steps += steps
         effort = self._effort(link.joint, step)
-        slide.steady &= not effort   # a loop can change it in each step
-        biases, slide.biases = slide.biases, {}
+        slide.steady = not slips and not effort   # a loop can change it in each step
         others = {(contact[OTHER_BODY], contact[OTHER_LINK]): None for contact in contacts}
         for other in others:
             if other not in self._links or slips and other in self._slipping and other < key:
                 continue
             points, carried = contacts, loads
             if len(others) > 1:
-                points, carried = _with_other(other, contacts, loads)
+                points, carried = with_other(other, contacts, loads)
             under = self._links[other]
             mobility = None if link.body.rigid or under.body.moves else (
                 self._mobility(link, points[0], min(link.mus) * weight))
@@ -408,10 +399,3 @@ class WheelFriction(StepHelper):
         share = wheel.radius * abs(rate) / wheel.normal_force
         for key in self._rows[wheel.row]:
             self._links[key].slips = (share * wheel.lateral, share * wheel.longitudinal)
-
-
-def _with_other(other: LinkKey, contacts: Contacts, loads: List[float]) -> Loads:
-    """Return the contacts with one other link, and their loads."""
-    found = [(contact, load) for contact, load in zip(contacts, loads)
-             if (contact[OTHER_BODY], contact[OTHER_LINK]) == other]
-    return [contact for contact, _ in found], [load for _, load in found]
