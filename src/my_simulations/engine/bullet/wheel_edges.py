@@ -37,27 +37,32 @@ class WheelEdges(NamedTuple):
     def points(self, loaded: Loads) -> Loads:
         """Return points on the line between the edges, and the load of each, N."""
         contacts, loads = loaded
+        a, b, c = self.along
         points: List[ContactPoint] = []
         for contact, upper in zip(contacts, self.upper):
+            (x, y, z), before, after = contact[POINT], contact[:POINT], contact[POINT + 1:]
             for share in _SHARES:
-                place = add(contact[POINT], scale(self.along, -share if upper else share))
-                points.append((*contact[:POINT], place, *contact[POINT + 1:]))
+                part = -share if upper else share
+                points.append((*before, (x + part * a, y + part * b, z + part * c), *after))
         return points, [load / len(_SHARES) for load in loads for _ in _SHARES]
 
     def at_contacts(self, forces: Sequence[Vec3]) -> List[Vec3]:
         """Return forces at the contacts with the sum and the moment of forces at the points, N."""
-        count = len(_SHARES)
+        near, far = _SHARES
         # Forces of an edge's points differ, so each is divided between the edges by its place.
         kept: List[Vec3] = []
-        given = {True: (0.0, 0.0, 0.0), False: (0.0, 0.0, 0.0)}
-        for n, upper in enumerate(self.upper):
-            own = (0.0, 0.0, 0.0)
-            for share, force in zip(_SHARES, forces[count * n:count * (n + 1)]):
-                own = add(own, scale(force, 1.0 - share))
-                given[not upper] = add(given[not upper], scale(force, share))
-            kept.append(own)
-        return [add(own, scale(given[upper], 1.0 / self.upper.count(upper)))
-                for own, upper in zip(kept, self.upper)]
+        given = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
+        for upper, (a, b, c), (u, v, w) in zip(self.upper, forces[::2], forces[1::2]):
+            x, y, z = near * a + far * u, near * b + far * v, near * c + far * w
+            kept.append((a + u - x, b + v - y, c + w - z))
+            other = given[not upper]
+            other[0] += x
+            other[1] += y
+            other[2] += z
+        uppers = sum(self.upper)
+        for parts, count in zip(given, (len(kept) - uppers, uppers)):
+            parts[:] = [part / count for part in parts]
+        return [add(own, given[upper]) for own, upper in zip(kept, self.upper)]
 
 
 def wheel_edges(axle: Optional[Vec3], moves: Motion, contacts: Sequence[ContactPoint],
