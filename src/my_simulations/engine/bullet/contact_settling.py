@@ -36,7 +36,8 @@ from .world_parameters import USUAL_ACCURACY, Accuracy, WorldParameters
 
 EVERY = 16               # steps between two checks of articulated bodies
 _RIGID_EVERY = 256       # the same for rigid bodies, of which there may be hundreds
-_SLOW_SPEED = 0.02       # m/s and rad/s: of the base, and of all joints
+_SLOW_SPEED = 0.02       # m/s and rad/s, of the base or a rigid body
+_SLOW_RATE = 0.05        # rad/s or m/s, of all joints: braked wheels of 3 cm creep at 0.02
 _STILL_SPEED = 2e-5      # m/s and rad/s, of the base: a faster one moves, it does not creep
 _STILL_RATE = 3e-4       # rad/s or m/s: the rate of a wheel of 6 cm on a base at _STILL_SPEED
 _SKIPPED = 3             # checks that an arm without contacts skips
@@ -210,7 +211,7 @@ class ContactSettling(StepHelper):
         held, tree.held = tree.held, None
         fastest = max([abs(state[1]) for state in states], default=0.0)
         speed = 0.0 if body.base is None else _speed(body.uid)
-        if speed > _SLOW_SPEED or fastest > _SLOW_SPEED and held is None:
+        if speed > _SLOW_SPEED or fastest > _SLOW_RATE and held is None:
             tree.still_checks = 0
             return False
         if tree.skip:
