@@ -60,9 +60,9 @@ class WheelEdges(NamedTuple):
             other[1] += y
             other[2] += z
         uppers = sum(self.upper)
-        for parts, count in zip(given, (len(kept) - uppers, uppers)):
-            parts[:] = [part / count for part in parts]
-        return [add(own, given[upper]) for own, upper in zip(kept, self.upper)]
+        shares = [(x / count, y / count, z / count)
+                  for (x, y, z), count in zip(given, (len(kept) - uppers, uppers))]
+        return [add(own, shares[upper]) for own, upper in zip(kept, self.upper)]
 
 
 def wheel_edges(axle: Optional[Vec3], moves: Motion, contacts: Sequence[ContactPoint],

@@ -263,8 +263,8 @@ class WheelFriction(StepHelper):
             slide.load = load
         for uid in {uid for uid, _ in self._readings}:
             self._next[uid] = step + 1 if uid in unsteady else later
-        for key, (moves, loads) in list(self._readings.items()):
-            self._update_friction(key, moves, *loads, step, dt, weight)
+        for key, (moves, (contacts, loads)) in list(self._readings.items()):
+            self._update_friction(key, moves, contacts, loads, step, dt, weight)
         self._readings.clear()
         self._restore_at_rest()
 
