@@ -7,21 +7,19 @@ import signal
 import pytest
 from conftest import box, ground
 from inline_engine import InlineEngine
+from running_simulator import started
 
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
 from my_simulations.engine.process_engine import ProcessEngine
 from my_simulations.errors import CommandError
 from my_simulations.geometry import STILL, Pose, Twist, compose, inverse
-from my_simulations.simulator.simulator import Simulator
 
 
 def world(make):
     held, hand = box("held", 0.1, 0.5), box("hand", 0.2, 2.0)
     held.pose, hand.pose = Pose((0.0, 0.0, 0.849)), Pose((0.0, 0.0, 1.0))
-    made = Simulator(World(models=[ground(mu=1.0), held, hand]), engine_factory=make,
-                     paused=True, log=lambda issue: None)
-    made.start()
+    made = started(World(models=[ground(mu=1.0), held, hand]), engine=make)
     made.models.hold("hand", True)
     return made
 

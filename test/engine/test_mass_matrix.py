@@ -9,14 +9,13 @@ import numpy as np
 import pybullet
 import pytest
 from conftest import arm
-from inline_engine import InlineEngine
+from running_simulator import started
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
 from my_simulations.engine.bullet.mass_matrix import MassMatrix
 from my_simulations.geometry import Pose
-from my_simulations.simulator.simulator import Simulator
 
 DT = 1e-5
 
@@ -87,9 +86,7 @@ def chain(count: int, mass: float) -> Model:
 
 def test_a_body_that_comes_where_another_has_gone_has_its_own_masses():
     faults = []
-    sim = Simulator(World(), engine_factory=lambda: InlineEngine(BulletBackend), paused=True,
-                    log=faults.append)
-    sim.start()
+    sim = started(World(), BulletBackend, log=faults.append)
     seen = {}
     for turn in range(30):
         count, mass = 1 + turn % 3, 1.0 + turn % 2
@@ -105,9 +102,7 @@ def test_a_body_that_comes_where_another_has_gone_has_its_own_masses():
 
 
 def test_a_stiff_axis_keeps_its_law_when_a_lighter_body_was_there_before():
-    sim = Simulator(World(), engine_factory=lambda: InlineEngine(BulletBackend), paused=True,
-                    log=lambda issue: None)
-    sim.start()
+    sim = started(World(), BulletBackend)
     damped = JointAxis((0, 0, 1), damping=1000.0)
     for mass in (0.01, 100.0):
         model = replace(arm("revolute", damped, mass=mass, gravity=False), name="arm")

@@ -2,13 +2,12 @@
 from __future__ import annotations
 
 import pytest
-from inline_engine import InlineEngine
+from running_simulator import running, started
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
 from my_simulations.geometry import Pose, Twist, rotate
-from my_simulations.simulator.simulator import Simulator
 
 PLATE = Inertial(1.0, Pose((0.0, -0.5, 0.0)), ixx=0.05, iyy=0.05, izz=1.5)
 
@@ -18,14 +17,9 @@ def swinging(axis, seconds=0.2):
     model = Model("m", Pose((0, 0, 3)), links=[Link("l", inertial=PLATE)],
                   joints=[Joint("j", "revolute", "world", "l", axis=axis)])
     faults = []
-    sim = Simulator(World(models=[model]), engine_factory=lambda: InlineEngine(BulletBackend),
-                    paused=True, log=faults.append)
-    try:
-        sim.start()
+    with running(World(models=[model]), BulletBackend, log=faults.append) as sim:
         sim.clock.advance(round(seconds * 1000))
         ((position, rate),) = sim.joints.states("j")
-    finally:
-        sim.close()
     assert faults == []
     return position, rate
 
@@ -54,10 +48,8 @@ def thrown_arm(inertial, seconds=0.5):
     joints = [Joint("first", "revolute", "l0", "l1", axis=JointAxis((0, 1, 0), damping=0.3)),
               Joint("second", "revolute", "l1", "l2", axis=JointAxis((0, 0, 1)))]
     faults = []
-    sim = Simulator(World(models=[Model("m", links=links, joints=joints)]), paused=True,
-                    engine_factory=lambda: InlineEngine(BulletBackend), log=faults.append)
-    try:
-        sim.start()
+    with running(World(models=[Model("m", links=links, joints=joints)]), BulletBackend,
+                 log=faults.append) as sim:
         sim.states.set_model_state("m", Pose((0, 0, 9)), Twist((1.0, 0.0, 4.0), (3.0, -2.0, 5.0)))
         sim.wrenches.apply_effort("second", 0.5)
         sim.clock.advance(round(seconds * 1000))
@@ -66,8 +58,6 @@ def thrown_arm(inertial, seconds=0.5):
                                 *rotate(pose.orientation, (0, 1, 0)), *twist.angular)]
         found += [number for joint in ("first", "second")
                   for number in sim.joints.states(joint)[0]]
-    finally:
-        sim.close()
     assert faults == []
     return found
 
@@ -108,9 +98,7 @@ def branches(depth, width):
 @pytest.mark.parametrize("depth, width", [(2, 2), (3, 2), (2, 4)])
 def test_each_link_and_joint_of_a_branching_robot_is_itself(depth, width):
     model = branches(depth, width)
-    sim = Simulator(World(gravity=(0, 0, 0)), engine_factory=lambda: InlineEngine(BulletBackend),
-                    paused=True, log=lambda issue: None)
-    sim.start()
+    sim = started(World(gravity=(0, 0, 0)), BulletBackend)
     sim.models.spawn(model)
     for link in model.links:
         assert sim.states.link_state(f"tree::{link.name}")[0].position == pytest.approx(
@@ -131,9 +119,7 @@ def test_each_link_and_joint_of_a_branching_robot_is_itself(depth, width):
 
 def test_an_effort_on_a_branching_robot_meets_the_mass_of_its_own_link():
     model = branches(2, 2)
-    sim = Simulator(World(gravity=(0, 0, 0)), engine_factory=lambda: InlineEngine(BulletBackend),
-                    paused=True, log=lambda issue: None)
-    sim.start()
+    sim = started(World(gravity=(0, 0, 0)), BulletBackend)
     sim.models.spawn(model)
     leaf = next(joint for joint in model.joints
                 if joint.type == "prismatic" and joint.child.count("_") == 2)

@@ -13,6 +13,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import arm, ball, box, ground
+from plugin_case import kept
+from running_simulator import running, started
 from waiting import until
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
@@ -34,21 +36,15 @@ from my_simulations.simulator.simulator import Simulator
 
 @pytest.fixture
 def start():
-    made = []
-
     def begin(*models, paused=True, physics=None, joints=()):
         issues = []
-        sim = Simulator(World(models=[ground(), *models], physics=physics or Physics(),
-                              joints=list(joints)),
-                        engine_factory=ProcessEngine, paused=paused, log=issues.append)
+        sim = started(World(models=[ground(), *models], physics=physics or Physics(),
+                            joints=list(joints)),
+                      engine=ProcessEngine, paused=paused, log=issues.append)
         sim.issues = issues
-        made.append(sim)
-        sim.start()
         return sim
 
-    yield begin
-    for sim in made:
-        sim.close()
+    yield from kept(begin)
 
 
 def kill(sim: Simulator) -> int:
@@ -313,9 +309,7 @@ def test_a_world_starts_at_its_saved_time_with_its_velocities_and_joint_position
     world = World(models=[ball(), pendulum], initial_ns=2_500_000_000, initial={
         "ball": InitialState({"link": Twist((1, 0, 0), (0, 0, 2))}),
         "arm": InitialState(joints={"hinge": 0.4})})
-    sim = Simulator(world, engine_factory=ProcessEngine, paused=True, log=print)
-    try:
-        sim.start()
+    with running(world, engine=ProcessEngine, log=print) as sim:
         for _ in range(2):   # again after a reset, which goes back to time 0
             assert sim.states.model_state("ball")[1] == Twist((1, 0, 0), (0, 0, 2))
             assert sim.joints.states("hinge")[0] == (0.4, 0.0)
@@ -323,8 +317,6 @@ def test_a_world_starts_at_its_saved_time_with_its_velocities_and_joint_position
             sim.clock.advance(10)
             sim.resets.reset_simulation()
             world.initial_ns = 0
-    finally:
-        sim.close()
 
 
 def test_a_driven_joint_is_driven_on_after_an_edit_and_a_crash(start):

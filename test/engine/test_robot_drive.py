@@ -10,6 +10,7 @@ from conftest import ground
 from inline_engine import InlineEngine
 from planar_pose import planar_pose
 from plugin_graph import Graph
+from running_simulator import started
 
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
@@ -22,7 +23,6 @@ from my_simulations.plugins.testing import Message
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator.effort_operations import DriveJoint
 from my_simulations.simulator.joint_gains import default_gains
-from my_simulations.simulator.simulator import Simulator
 
 ROBOT = pathlib.Path(__file__).resolve().parents[2] / "urdf" / "robo.urdf"
 
@@ -31,9 +31,7 @@ class Drive:
     def __init__(self):
         engine = InlineEngine(BulletBackend)
         robot, _ = read_file(str(ROBOT), Resolver())
-        self.sim = Simulator(World(models=[ground(mu=1.0), robot]), engine_factory=lambda: engine,
-                             paused=True, log=lambda issue: None)
-        self.sim.start()
+        self.sim = started(World(models=[ground(mu=1.0), robot]), engine=lambda: engine)
         self.graph = Graph()
         self.graph.ignored |= {"/scan", "/camera/image_raw", "/camera/image_raw/compressed"}
         self.host = PluginHost(self.sim, self.graph, PluginRegistry(), lambda issue: None)

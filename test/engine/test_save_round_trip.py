@@ -1,15 +1,17 @@
 """A world that ran in the engine, saved and loaded, goes on where it was."""
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
-from inline_engine import InlineEngine
+import running_simulator
+from plugin_case import kept
 
 from my_simulations.description.compare import differences
 from my_simulations.engine.bullet.backend import BulletBackend
 from my_simulations.formats.reading import parse_world, read_world
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator.saving import present_world, save_world
-from my_simulations.simulator.simulator import Simulator
 
 TENSOR = "<inertia><ixx>0.0167</ixx><iyy>0.0167</iyy><izz>0.0167</izz></inertia>"
 INERTIAL = f"<inertial><mass>1</mass>{TENSOR}</inertial>"
@@ -35,18 +37,8 @@ WORLD = f"""<sdf version="1.7"><world name="lab">
 
 @pytest.fixture
 def started():
-    made = []
-
-    def start(world):
-        sim = Simulator(world, engine_factory=lambda: InlineEngine(BulletBackend), paused=True,
-                        log=lambda issue: pytest.fail(str(issue)))
-        made.append(sim)
-        sim.start()
-        return sim
-
-    yield start
-    for sim in made:
-        sim.close()
+    yield from kept(partial(running_simulator.started, backend=BulletBackend,
+                            log=lambda issue: pytest.fail(str(issue))))
 
 
 @pytest.mark.parametrize("steps", [0, 1, 217, 1500])

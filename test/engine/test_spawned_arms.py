@@ -3,9 +3,9 @@ from __future__ import annotations
 
 import pytest
 from conftest import ground
-from inline_engine import InlineEngine
 from plugin_case import kept
 from plugin_graph import Graph
+from running_simulator import started
 from waiting import until
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
@@ -20,7 +20,6 @@ from my_simulations.plugins.control.gazebo_ros_control import PATIENCE_S, Gazebo
 from my_simulations.plugins.host import PluginHost
 from my_simulations.plugins.registry import PluginRegistry
 from my_simulations.plugins.testing import Message
-from my_simulations.simulator.simulator import Simulator
 
 CONTROL = "libgazebo_ros_control.so"
 NAMES = [f"joint{n}" for n in range(6)]
@@ -71,9 +70,8 @@ class Spawning:
         self.issues, self.graph, self.host = [], Graph(parameters), None
         self.classes = classes or {}
         SEEN.clear()
-        self.sim = Simulator(World(models=[ground()]), log=self.issues.append,
-                             engine_factory=lambda: InlineEngine(BulletBackend))
-        self.sim.start()
+        self.sim = started(World(models=[ground()]), BulletBackend, log=self.issues.append,
+                           paused=False)
         self.sim.sync_points.on_plugins(self._begin)
         until(lambda: self.sim.clock.step > 20)
 

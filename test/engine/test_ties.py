@@ -6,10 +6,13 @@ import os
 import signal
 import time
 from dataclasses import replace
+from functools import partial
 
 import pytest
 from closed_forms import pendulum
 from conftest import Lab, arm, box, ground, slab
+from plugin_case import kept
+from running_simulator import running, started
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
@@ -190,17 +193,7 @@ def _world() -> World:
 
 @pytest.fixture
 def start():
-    made = []
-
-    def begin(world):
-        sim = Simulator(world, engine_factory=ProcessEngine, paused=True, log=lambda issue: None)
-        made.append(sim)
-        sim.start()
-        return sim
-
-    yield begin
-    for sim in made:
-        sim.close()
+    yield from kept(partial(started, engine=ProcessEngine))
 
 
 def _hangs(sim: Simulator, name: str = "door") -> bool:
@@ -272,10 +265,6 @@ def test_a_sliding_joint_of_the_world_makes_its_models_articulated(start):
 def test_a_joint_between_models_of_a_type_that_cannot_hold_is_told():
     world, issues = _world(), []
     world.joints[0].type = "screw"
-    sim = Simulator(world, engine_factory=ProcessEngine, paused=True, log=issues.append)
-    try:
-        sim.start()
+    with running(world, engine=ProcessEngine, log=issues.append) as sim:
         assert [issue.code for issue in issues] == ["joint-not-held"]
         assert sim.models.inter_model_joints == []
-    finally:
-        sim.close()

@@ -6,14 +6,13 @@ import os
 from pathlib import Path
 
 import pytest
-from inline_engine import InlineEngine
+from running_simulator import running
 
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
 from my_simulations.errors import InputError, errors_of
 from my_simulations.formats.reading import read_entity, read_file, read_world_text
 from my_simulations.resources.resolver import Resolver
-from my_simulations.simulator.simulator import Simulator
 
 INVALID = Path(__file__).resolve().parents[1] / "data/invalid"
 CUBE = INVALID.parent / "valid/cube.stl"
@@ -24,14 +23,9 @@ GROUND = ("<model name='ground'><static>1</static><link name='l'><collision name
 def after(world, meshes=None, steps=500):
     """Poses by model, and what was logged, after some steps."""
     faults = []
-    sim = Simulator(world, engine_factory=lambda: InlineEngine(BulletBackend), paused=True,
-                    log=faults.append, meshes=meshes or {})
-    try:
-        sim.start()
+    with running(world, BulletBackend, log=faults.append, meshes=meshes or {}) as sim:
         sim.clock.advance(steps)
         return {name: sim.states.model_state(name)[0] for name in sim.models.names()}, faults
-    finally:
-        sim.close()
 
 
 def tolerated_files():

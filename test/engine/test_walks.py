@@ -8,6 +8,7 @@ from contextlib import contextmanager
 
 from architecture_walks import walks
 from inline_engine import InlineEngine
+from running_simulator import started
 
 import my_simulations
 from my_simulations.description.world import World
@@ -15,7 +16,6 @@ from my_simulations.engine.bullet.backend import BulletBackend
 from my_simulations.formats.mesh.loading import collision_meshes
 from my_simulations.formats.reading import parse_document
 from my_simulations.resources.resolver import Resolver
-from my_simulations.simulator.simulator import Simulator
 from my_simulations.simulator.spawn_advice import placement_warnings
 from my_simulations.simulator.world_loading import start_world
 
@@ -68,8 +68,7 @@ def engine():
 
 def test_a_spawn_passes_the_stops_of_its_walk():
     with recorded() as calls:
-        simulator = Simulator(World("w"), engine_factory=engine, log=print, paused=True)
-        simulator.start()
+        simulator = started(World("w"), engine=engine, log=print)
         model, issues = parse_document(ROBOT, Resolver([]), "robot").read_entity()
         assert issues == []
         meshes, _ = collision_meshes(model)
@@ -90,8 +89,7 @@ def test_a_world_with_an_include_passes_the_stops_of_its_walk(tmp_path):
 
 def test_a_timed_joint_effort_passes_the_stops_of_its_walk():
     with recorded() as calls:
-        simulator = Simulator(World("w"), engine_factory=engine, log=print, paused=True)
-        simulator.start()
+        simulator = started(World("w"), engine=engine, log=print)
         model, _ = parse_document(ROBOT, Resolver([]), "robot").read_entity()
         simulator.models.spawn(model)
         calls.clear()

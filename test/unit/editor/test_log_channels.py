@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from editor_case import box
-from inline_engine import InlineEngine
+from running_simulator import started
 from test_replay_page import content, modules  # noqa: F401
 
 import my_simulations
@@ -23,7 +23,6 @@ from my_simulations.errors import CommandError, EngineLostError
 from my_simulations.geometry import IDENTITY
 from my_simulations.resources.resolver import Resolver
 from my_simulations.ros.lifecycle.server_options import parse
-from my_simulations.simulator.simulator import Simulator
 
 
 class Source:
@@ -148,9 +147,7 @@ def test_messages_beyond_a_size_are_left_out(writer):
 
 def test_a_recorder_subscribes_to_the_topics_of_its_options(tmp_path):
     source, issues = Source("/sonar"), []
-    sim = Simulator(World(models=[box("a")]), paused=True, log=issues.append,
-                    engine_factory=InlineEngine)
-    sim.start()
+    sim = started(World(models=[box("a")]), log=issues.append)
     recorder = Recorder(sim, Resolver([]), str(tmp_path / "state.log"), 0.001, issues.append,
                         source, ("/sonar",))
     source.calls["/sonar"](range_message(3.0))

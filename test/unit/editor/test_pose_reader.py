@@ -5,21 +5,18 @@ import time
 
 import pytest
 from editor_case import box
-from inline_engine import InlineEngine
+from running_simulator import started
 
 from my_simulations.description.world import World
 from my_simulations.editor.transport.pose_reader import PoseReader
 from my_simulations.engine.ring import RingWriter
 from my_simulations.geometry import Pose, Twist
-from my_simulations.simulator.simulator import Simulator
 
 
 @pytest.fixture
 def flight():
     """A box that flies with 1 m/s along x from the origin, at sim time 0; twists are unused."""
-    simulator = Simulator(World(models=[box("a")], gravity=(0.0, 0.0, 0.0)), paused=True,
-                          engine_factory=InlineEngine, log=lambda issue: None)
-    simulator.start()
+    simulator = started(World(models=[box("a")], gravity=(0.0, 0.0, 0.0)))
     simulator.states.set_model_state("a", Pose(), Twist((1.0, 0.0, 0.0)))
     yield simulator
     simulator.close()

@@ -11,7 +11,7 @@ import sys
 import numpy as np
 import pytest
 from editor_case import Case, box
-from inline_engine import InlineEngine
+from running_simulator import started
 from waiting import until
 
 from my_simulations.cli.front_ends import FrontEnds
@@ -23,7 +23,6 @@ from my_simulations.errors import CommandError, Severity
 from my_simulations.geometry import Pose, Twist
 from my_simulations.resources.resolver import Resolver
 from my_simulations.ros.lifecycle.server_options import parse
-from my_simulations.simulator.simulator import Simulator
 
 DEADLINE = 60.0
 
@@ -39,9 +38,7 @@ class Running:
         self.issues = []
         self.path = str(folder / "log" / "state.log")
         options = {} if steps is None else {"steps": steps}
-        self.sim = Simulator(World(models=[box("a")]), paused=True, log=self.issues.append,
-                             engine_factory=InlineEngine, **options)
-        self.sim.start()
+        self.sim = started(World(models=[box("a")]), log=self.issues.append, **options)
         self.sim.states.set_model_state("a", Pose((0, 0, 9)), Twist((2.0, 0.0, 0.0)))
         self.recorder = Recorder(self.sim, Resolver.from_environment(), self.path, period,
                                  self.issues.append)

@@ -9,7 +9,7 @@ import re
 import numpy as np
 import pytest
 from editor_case import box
-from inline_engine import InlineEngine
+from running_simulator import started
 
 from my_simulations.cli.replay_command import main
 from my_simulations.description.shapes import Heightmap, Mesh, Polyline
@@ -22,7 +22,6 @@ from my_simulations.editor.transport.page_files import PageFiles
 from my_simulations.editor.transport.pose_messages import Poses
 from my_simulations.errors import CommandError
 from my_simulations.resources.resolver import Resolver
-from my_simulations.simulator.simulator import Simulator
 
 LETTERS = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
 
@@ -49,9 +48,7 @@ def shaped(name, geometry):
 def recorded(folder, models):
     """The log of the first state of a world."""
     issues = []
-    sim = Simulator(World(models=models), paused=True, log=issues.append,
-                    engine_factory=InlineEngine)
-    sim.start()
+    sim = started(World(models=models), log=issues.append)
     recorder = Recorder(sim, Resolver([str(folder)]), str(folder / "run" / "state.log"), 0.001,
                         issues.append)
     recorder.stop()

@@ -6,7 +6,7 @@ import threading
 import pytest
 from gazebo_msgs import srv
 from geometry_msgs.msg import Pose as PoseMessage
-from inline_engine import InlineEngine
+from running_simulator import running
 
 from my_simulations.description.light import Light
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
@@ -20,7 +20,6 @@ from my_simulations.ros.services.model_services import ModelServices
 from my_simulations.ros.services.physics_parameters import change_parameters, current_parameters
 from my_simulations.ros.services.wrench_services import WrenchServices
 from my_simulations.simulator.registry import UnknownEntityError
-from my_simulations.simulator.simulator import Simulator
 
 FAR = Pose((5.0, 5.0, 5.0))
 NEAR = Pose((1.0, 0.0, 0.0))
@@ -34,11 +33,8 @@ def model(name):
 
 @pytest.fixture
 def sim():
-    made = Simulator(World(models=[model("a"), model("other")], lights=[Light("sun")]),
-                     paused=True, log=lambda issue: None, engine_factory=InlineEngine)
-    made.start()
-    yield made
-    made.close()
+    with running(World(models=[model("a"), model("other")], lights=[Light("sun")])) as made:
+        yield made
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 from geometry_msgs.msg import Pose, Quaternion
-from inline_engine import InlineEngine
+from running_simulator import started
 
 from my_simulations.description.world import World
 from my_simulations.errors import CommandError, InputError
@@ -15,7 +15,6 @@ from my_simulations.resources.package_files import own_directory
 from my_simulations.resources.resolver import Resolver
 from my_simulations.ros.plugins.plugin_starter import PluginStarter
 from my_simulations.ros.services.model_services import ModelServices
-from my_simulations.simulator.simulator import Simulator
 
 BOX = ("<sdf version='1.6'{0}><model name='m'><link name='l'><collision name='c'><geometry><box>"
        "<size>1 1 1</size></box></geometry></collision></link></model></sdf>")
@@ -31,9 +30,7 @@ def request(name="a", xml=BOX, **fields):
 @pytest.fixture
 def services():
     issues, reported = [], []
-    simulator = Simulator(World(), engine_factory=InlineEngine,
-                          paused=True, log=reported.append)
-    simulator.start()
+    simulator = started(World(), log=reported.append)
     made = ModelServices(simulator, Resolver(), issues.append, launcher=41)
     yield SimpleNamespace(spawn=made, simulator=simulator, issues=issues, reported=reported)
     simulator.close()

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 from geometry_msgs.msg import Pose, Quaternion
-from inline_engine import InlineEngine
+from running_simulator import started
 from work_count import lines_run
 
 from my_simulations.description.world import World
@@ -13,7 +13,6 @@ from my_simulations.plugins.running import ModelPlugins
 from my_simulations.resources.resolver import Resolver
 from my_simulations.ros.plugins.plugin_starter import PluginStarter
 from my_simulations.ros.services.model_services import ModelServices
-from my_simulations.simulator.simulator import Simulator
 from my_simulations.simulator.spawn_advice import NEIGHBOURS
 
 BOX = ("<robot name='b'><link name='link'><inertial><mass value='1'/><inertia ixx='.1' ixy='0'"
@@ -25,9 +24,7 @@ SAMPLES = 5
 
 @pytest.fixture
 def services():
-    simulator = Simulator(World(), engine_factory=InlineEngine,
-                          paused=True, log=lambda issue: None)
-    simulator.start()
+    simulator = started(World())
     starter = PluginStarter(simulator, lambda issue: None)
     yield ModelServices(simulator, Resolver(), lambda issue: None,
                         changed=starter.wait_until_loaded)

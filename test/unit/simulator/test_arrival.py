@@ -4,7 +4,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from inline_engine import InlineEngine
+from running_simulator import running
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Plane
@@ -14,7 +14,6 @@ from my_simulations.formats.reading import parse_document
 from my_simulations.geometry import STILL, Pose
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator import spawn_advice
-from my_simulations.simulator.simulator import Simulator
 from my_simulations.simulator.spawn_advice import overlap_warnings, placement_warnings
 
 
@@ -29,11 +28,9 @@ GROUND = Model("ground", static=True, links=[Link("l", collisions=[Collision("c"
 
 @pytest.fixture
 def sim():
-    made = Simulator(World(models=[GROUND, cube("deep", 0.2), cube("high", 5.0)]), paused=True,
-                     engine_factory=InlineEngine, log=lambda issue: pytest.fail(str(issue)))
-    made.start()
-    yield made
-    made.close()
+    with running(World(models=[GROUND, cube("deep", 0.2), cube("high", 5.0)]),
+                 log=lambda issue: pytest.fail(str(issue))) as made:
+        yield made
 
 
 def said(sim, model):

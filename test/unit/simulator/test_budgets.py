@@ -2,23 +2,19 @@
 from __future__ import annotations
 
 import pytest
-from inline_engine import InlineEngine
+from running_simulator import running
 
 from my_simulations.description import cost_budget
 from my_simulations.description.cost_budget import MODEL_BUDGET, Cost
 from my_simulations.description.model import Link, Model
 from my_simulations.description.world import World
 from my_simulations.errors import CommandError
-from my_simulations.simulator.simulator import Simulator
 
 
 @pytest.fixture
 def simulator():
-    made = Simulator(World(), engine_factory=InlineEngine, paused=True,
-                     log=lambda issue: None)
-    made.start()
-    yield made
-    made.close()
+    with running(World()) as made:
+        yield made
 
 
 def model(name, count=1):

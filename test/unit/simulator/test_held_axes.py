@@ -2,13 +2,11 @@
 from __future__ import annotations
 
 import pytest
-from inline_engine import InlineEngine
-from kinematic_backend import KinematicBackend
+from running_simulator import running
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
 from my_simulations.engine.drive_commands import JointMotor, JointServo
-from my_simulations.simulator.simulator import Simulator
 
 
 @pytest.fixture
@@ -16,11 +14,8 @@ def drives():
     cart = Model("cart", links=[Link("base", inertial=Inertial()),
                                 Link("wheel", inertial=Inertial())],
                  joints=[Joint("axle", "revolute", "base", "wheel", axis=JointAxis())])
-    made = Simulator(World(models=[cart]), paused=True, log=lambda issue: None,
-                     engine_factory=lambda: InlineEngine(KinematicBackend))
-    made.start()
-    yield made.drives
-    made.close()
+    with running(World(models=[cart])) as made:
+        yield made.drives
 
 
 def row_of(drives):

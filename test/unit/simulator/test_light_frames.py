@@ -4,24 +4,21 @@ from __future__ import annotations
 import math
 
 import pytest
-from inline_engine import InlineEngine
+from running_simulator import running
 
 from my_simulations.description.light import Light
 from my_simulations.description.model import Link, Model
 from my_simulations.description.world import World
 from my_simulations.geometry import STILL, Pose, quat_from_rpy
 from my_simulations.simulator.registry import UnknownFrameError
-from my_simulations.simulator.simulator import Simulator
 
 
 @pytest.fixture
 def sim():
     lamp = Light("lamp", pose=Pose((1.0, 2.0, 3.0), quat_from_rpy(0, 0, math.pi / 2)))
-    made = Simulator(World(models=[Model("box", links=[Link("link")])], lights=[lamp]),
-                     engine_factory=InlineEngine, paused=True, log=print)
-    made.start()
-    yield made
-    made.close()
+    with running(World(models=[Model("box", links=[Link("link")])], lights=[lamp]),
+                 log=print) as made:
+        yield made
 
 
 def test_states_are_told_and_set_in_the_frame_of_a_light(sim):

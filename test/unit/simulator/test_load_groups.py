@@ -2,8 +2,8 @@
 from __future__ import annotations
 
 import pytest
-from inline_engine import InlineEngine
 from kinematic_backend import KinematicBackend
+from running_simulator import running
 
 from my_simulations.description.model import Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Mesh
@@ -12,7 +12,6 @@ from my_simulations.engine.api import CommandRefusedError
 from my_simulations.engine.commands import LoadModel
 from my_simulations.simulator import load_groups
 from my_simulations.simulator.load_groups import small_groups
-from my_simulations.simulator.simulator import Simulator
 
 
 def model(name, links=1, shapes=0, geometry=None, joints=()):
@@ -59,14 +58,9 @@ class Backend(KinematicBackend):
 
 def test_a_refused_model_costs_only_itself():
     issues = []
-    simulator = Simulator(World(models=[model(name) for name in ("a", "bad", "b")]),
-                          engine_factory=lambda: InlineEngine(Backend), paused=True,
-                          log=issues.append)
-    try:
-        simulator.start()
+    with running(World(models=[model(name) for name in ("a", "bad", "b")]), Backend,
+                 log=issues.append) as simulator:
         assert simulator.models.names() == ["a", "b"]
         refused = [one.message for one in issues if one.code == "model-refused"]
         assert refused == ["skipped model 'bad': it is bad"]
         assert simulator.models.losses == refused
-    finally:
-        simulator.close()

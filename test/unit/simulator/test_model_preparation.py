@@ -3,15 +3,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from inline_engine import InlineEngine
 from kinematic_backend import KinematicBackend
+from running_simulator import running
 
 from my_simulations.description.model import Link, Model
 from my_simulations.description.shapes import Collision, Mesh, MeshData, mesh_key
 from my_simulations.description.world import World
 from my_simulations.engine.commands import Batch, ContinuePreparation, LoadModel, PrepareModel
 from my_simulations.simulator.load_groups import PLAIN_TRIANGLES
-from my_simulations.simulator.simulator import Simulator
 
 MESH = Mesh("m", "/m")
 
@@ -41,11 +40,8 @@ def told():
 
 @pytest.fixture
 def simulator(told):
-    made = Simulator(World(), engine_factory=lambda: InlineEngine(lambda: Backend(told)),
-                     paused=False, log=lambda issue: None)
-    made.start()
-    yield made
-    made.close()
+    with running(World(), lambda: Backend(told), paused=False) as made:
+        yield made
 
 
 def spawn(simulator, triangles, static=True):

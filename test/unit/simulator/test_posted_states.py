@@ -7,13 +7,13 @@ import time
 import pytest
 from inline_engine import InlineEngine
 from kinematic_backend import KinematicBackend
+from running_simulator import started
 
 from my_simulations.description.model import Inertial, Link, Model
 from my_simulations.description.world import World
 from my_simulations.engine.api import MOST_POSTED, CommandRefusedError
 from my_simulations.engine.commands import SetModelState
 from my_simulations.geometry import STILL, Pose
-from my_simulations.simulator.simulator import Simulator
 
 WAIT = 60.0
 THERE = Pose((1.0, 2.0, 3.0))
@@ -41,9 +41,7 @@ class Case:
         self.issues = []
         self.engine = InlineEngine(Gate)
         world = World(models=[Model("a", links=[Link("link", inertial=Inertial())])])
-        self.sim = Simulator(world, engine_factory=lambda: self.engine, paused=True,
-                             log=self.issues.append)
-        self.sim.start()
+        self.sim = started(world, engine=lambda: self.engine, log=self.issues.append)
 
     def put(self, pose=THERE):
         self.sim.states.set_model_state("a", pose, STILL)

@@ -5,8 +5,8 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from inline_engine import InlineEngine
 from reading import VALID, model_of, sdf, world_of
+from running_simulator import running
 
 from my_simulations.description.model import Joint, JointAxis, Link, Mimic, Model
 from my_simulations.description.world import World
@@ -14,7 +14,6 @@ from my_simulations.formats.reading import read_file, read_world
 from my_simulations.formats.sdf.writer.entities import write_entity, write_world
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator.saving import save_world
-from my_simulations.simulator.simulator import Simulator
 
 ROOT = Path(__file__).resolve().parents[3]
 WORLDS = sorted(ROOT.glob("world/**/*.world"))
@@ -84,15 +83,10 @@ def test_it_reads_a_running_world_with_joints_and_nested_models(faults, tmp_path
         Joint("hinge", "revolute", "base", "tip", axis=JointAxis()),
         Joint("screw", "screw", "world", "base", axis=JointAxis(mimic=Mimic("hinge", 2.0)))])
     outer = Model("outer", links=[Link("l")], models=[arm])
-    sim = Simulator(World("w", models=[outer, Model("wall", static=True, links=[Link("l")])]),
-                    engine_factory=InlineEngine, paused=True,
-                    log=lambda issue: pytest.fail(str(issue)))
-    try:
-        sim.start()
+    with running(World("w", models=[outer, Model("wall", static=True, links=[Link("l")])]),
+                 log=lambda issue: pytest.fail(str(issue))) as sim:
         sim.clock.advance(7)
         path = save_world(sim, "s.world", roots=[str(tmp_path)])
-    finally:
-        sim.close()
     assert faults(path) == ""
 
 

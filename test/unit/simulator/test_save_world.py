@@ -9,8 +9,9 @@ from dataclasses import replace
 
 import pytest
 from box_models import arm, box
-from inline_engine import InlineEngine
 from lxml import etree
+from plugin_case import kept
+from running_simulator import started
 
 from my_simulations.description.compare import differences
 from my_simulations.description.flatten import flatten_model
@@ -33,7 +34,6 @@ from my_simulations.simulator.saving import (
     present_world,
     save_world,
 )
-from my_simulations.simulator.simulator import Simulator
 
 AWAY = Pose((1.25, -2.5, 0.125), quat_from_rpy(0.1, 0.2, 0.3))
 
@@ -48,19 +48,9 @@ def cabinet(name):
 
 @pytest.fixture
 def running():
-    made = []
-
-    def run(*models, world=None):
-        world = world or World("lab", models=list(models), lights=[Light("sun")])
-        sim = Simulator(world, engine_factory=InlineEngine, paused=True,
-                        log=lambda issue: pytest.fail(str(issue)))
-        made.append(sim)
-        sim.start()
-        return sim
-
-    yield run
-    for sim in made:
-        sim.close()
+    yield from kept(lambda *models, world=None: started(
+        world or World("lab", models=list(models), lights=[Light("sun")]),
+        log=lambda issue: pytest.fail(str(issue))))
 
 
 def load(path):

@@ -10,6 +10,7 @@ import pytest
 from box_models import arm, box
 from inline_engine import InlineEngine
 from kinematic_backend import KinematicBackend
+from running_simulator import started
 
 from my_simulations.description.light import Light
 from my_simulations.description.model import Model
@@ -22,16 +23,14 @@ from my_simulations.geometry import IDENTITY, STILL, Pose, Twist, quat_from_rpy
 from my_simulations.simulator.feeds import ROW_WIDTH
 from my_simulations.simulator.registry import UnknownEntityError, UnknownFrameError
 from my_simulations.simulator.row_layout import RowAllocator
-from my_simulations.simulator.simulator import Simulator
 
 
 class Case:
     def __init__(self, *models, paused=True):
         self.issues = []
         self.engine = InlineEngine()
-        self.sim = Simulator(World(models=list(models)), engine_factory=lambda: self.engine,
-                             paused=paused, log=self.issues.append)
-        self.sim.start()
+        self.sim = started(World(models=list(models)), engine=lambda: self.engine, paused=paused,
+                           log=self.issues.append)
 
 
 @pytest.fixture

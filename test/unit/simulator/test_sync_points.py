@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 from inline_engine import InlineEngine
+from running_simulator import running
 from waiting import until
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
@@ -17,7 +18,6 @@ from my_simulations.engine.ring import RECORDS, STEP_BUDGET, WAITS_AT, budget_wo
 from my_simulations.engine.step_records import RecordRule
 from my_simulations.errors import CommandError
 from my_simulations.geometry import Pose
-from my_simulations.simulator.simulator import Simulator
 from my_simulations.simulator.sync_points import SimTimeStep, SyncPoints
 
 WAIT = 60.0
@@ -31,11 +31,8 @@ def arm():
 @pytest.fixture
 def simulator():
     engine = InlineEngine()
-    made = Simulator(World(models=[arm()]), engine_factory=lambda: engine, paused=True,
-                     log=lambda issue: None)
-    made.start()
-    yield made
-    made.close()
+    with running(World(models=[arm()]), engine=lambda: engine) as made:
+        yield made
 
 
 class Host:

@@ -6,6 +6,7 @@ import math
 import pytest
 from inline_engine import InlineEngine
 from kinematic_backend import KinematicBackend
+from running_simulator import started
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
@@ -16,7 +17,6 @@ from my_simulations.engine.timed_forces import JointPid, TimedWrench
 from my_simulations.errors import CommandError
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
 from my_simulations.simulator.registry import UnknownEntityError, UnknownFrameError
-from my_simulations.simulator.simulator import Simulator
 from my_simulations.simulator.wrenches import first_step, steps_of
 
 MS = 1000000
@@ -33,9 +33,7 @@ def arm(name, com=(0.0, 0.0, 0.0)):
 class Case:
     def __init__(self, *models):
         self.backends = []
-        self.sim = Simulator(World(models=list(models)), engine_factory=self.engine, paused=True,
-                             log=print)
-        self.sim.start()
+        self.sim = started(World(models=list(models)), engine=self.engine, log=print)
 
     def engine(self):
         def make():

@@ -4,8 +4,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from inline_engine import InlineEngine
 from kinematic_backend import KinematicBackend
+from running_simulator import running
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
@@ -30,11 +30,8 @@ def case():
         backends.append(KinematicBackend())
         return backends[-1]
 
-    made = Simulator(World(models=[cart("other"), cart()]), paused=True, log=lambda issue: None,
-                     engine_factory=lambda: InlineEngine(backend))
-    made.start()
-    yield made, backends
-    made.close()
+    with running(World(models=[cart("other"), cart()]), backend) as made:
+        yield made, backends
 
 
 def _slip(simulator: Simulator) -> WheelSlip:

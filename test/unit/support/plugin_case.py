@@ -1,15 +1,14 @@
 """A world with plugins: a simulator that is stepped by a test, a host, and a graph that keeps."""
 from __future__ import annotations
 
-from inline_engine import InlineEngine
 from plugin_graph import Graph
+from running_simulator import started
 from waiting import until
 
 from my_simulations.plugins.call_watch import CALL_LIMITS
 from my_simulations.plugins.host import PluginHost
 from my_simulations.plugins.registry import PluginRegistry
 from my_simulations.plugins.testing import Message
-from my_simulations.simulator.simulator import Simulator
 
 
 class PluginCase:
@@ -22,9 +21,7 @@ class PluginCase:
     def __init__(self, world, backend, extra=None, limits=CALL_LIMITS, parameters=None,
                  isolate=False):
         self.issues, self.graph = [], Graph(parameters)
-        self.sim = Simulator(world, engine_factory=lambda: InlineEngine(backend), paused=True,
-                             log=self.issues.append)
-        self.sim.start()
+        self.sim = started(world, backend, log=self.issues.append)
         self.host = PluginHost(self.sim, self.graph, PluginRegistry(extra), self.issues.append,
                                limits, isolate)
         self.host.start()
