@@ -97,13 +97,17 @@ class Yielding(NamedTuple):
     Attributes:
         total: the added friction: E v less the friction against the effort.
         spared: E v.
+        direction: of the lever, length 1.
+        extra: slip per force along it by the joint, as a share of that by the other parts.
     """
 
     total: Vec3
     spared: Vec3
+    direction: Vec3
+    extra: float
 
 
-STIFF = Yielding((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+STIFF = Yielding((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0)
 """Of a link whose joint does not yield."""
 
 
@@ -120,15 +124,31 @@ def yielding(lever: Vec3, rate_gain: float, effort: float, slip: Vec3, end: floa
         slip: mean, m/s.
         end: slip per force that friction ends, m/(N s).
     """
-    share = rate_gain / (end + rate_gain * dot(lever, lever))
+    square = dot(lever, lever)
+    share = rate_gain / (end + rate_gain * square)
     given = dot(lever, slip) / end
-    return Yielding(scale(lever, share * (given - effort)), scale(lever, share * given))
+    return Yielding(scale(lever, share * (given - effort)), scale(lever, share * given),
+                    scale(lever, 1.0 / max(sqrt(square), 1e-300)), rate_gain * square / end)
+
+
+def sliding(wanted: Vec3, yields: Yielding, most: float) -> Vec3:
+    """Return the friction against what is left of a slip that needs more than `most`, N.
+
+    `wanted` ends the slip in the step. Less of it leaves more slip along the lever than across it.
+    """
+    along = dot(wanted, yields.direction)
+    across = subtract(wanted, scale(yields.direction, along))
+    size = sqrt(dot(across, across))
+    first, second = limited((along, size), (1.0, 1.0), (1.0 + yields.extra, 1.0), most)
+    x, y, z = scale(across, second / max(size, 1e-300))
+    u, v, w = scale(yields.direction, first)
+    return x + u, y + v, z + w
 
 
 def yielding_along(lever: Tuple[float, float], rate_gain: float, effort: float,
                    slip: Tuple[float, float], soft: Tuple[float, float],
                    ) -> Tuple[Tuple[float, float], Tuple[float, float]]:
-    """Return the same along two axes with different slips per force, `soft`."""
+    """Return `total` and `spared` along two axes with different slips per force, `soft`."""
     u, v = lever[0] / soft[0], lever[1] / soft[1]
     share = rate_gain / (1.0 + rate_gain * (u * lever[0] + v * lever[1]))
     given = u * slip[0] + v * slip[1]
@@ -144,7 +164,7 @@ def isotropic(contacts: Sequence[ContactPoint], loads: Sequence[float], mine: Mo
     The law of `wheel_friction` for one coefficient and no slip, in a third of the time.
     """
     (cx, cy, cz), _, (u, v, w), (p, q, r) = mine
-    (bx, by, bz), (tx, ty, tz), (ex, ey, ez) = bias, *yields
+    (bx, by, bz), (tx, ty, tz), (ex, ey, ez) = bias, yields.total, yields.spared
     hx, hy, hz = bx + tx, by + ty, bz + tz
     total, within = sum(loads), False
     mx = my = mz = 0.0
@@ -159,7 +179,9 @@ def isotropic(contacts: Sequence[ContactPoint], loads: Sequence[float], mine: Mo
         share = load / total
         i, j, k = share * (hx - i / soft), share * (hy - j / soft), share * (hz - k / soft)
         size, most = sqrt(i * i + j * j + k * k), mu * load
-        if size > most:
+        if size > most and yields.extra:
+            i, j, k = sliding((i, j, k), yields, most)
+        elif size > most:
             i, j, k = i * most / size, j * most / size, k * most / size
         else:
             within = True

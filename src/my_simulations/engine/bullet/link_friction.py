@@ -132,17 +132,22 @@ def _at_points(one: SurfaceLink, two: SurfaceLink, mine: Motion, loaded: Loads, 
         direction_across(normal))
     axes = along, cross(normal, along)
     slips = slips_along(contacts, axes, mine, theirs)
-    given, spared = (0.0, 0.0), (0.0, 0.0)
+    given, spared, whole = (0.0, 0.0), (0.0, 0.0), law.soft
     if lever is not None:
-        given, spared = yielding_along((dot(lever, axes[0]), dot(lever, axes[1])), rate_gain,
-                                       drive.effort, mean_slip(slips, loads), law.soft)
-    return _along_axes(axes, slips, loads, bias, law, given, spared)
+        arms = dot(lever, axes[0]), dot(lever, axes[1])
+        given, spared = yielding_along(arms, rate_gain, drive.effort, mean_slip(slips, loads),
+                                       law.soft)
+        whole = (law.soft[0] + rate_gain * arms[0] ** 2, law.soft[1] + rate_gain * arms[1] ** 2)
+    return _along_axes(axes, slips, loads, bias, law, given, spared, whole)
 
 
 def _along_axes(axes: Tuple[Vec3, Vec3], slips: List[Tuple[float, float]], loads: List[float],
                 bias: Vec3, law: _Law, given: Tuple[float, float], spared: Tuple[float, float],
-                ) -> LinkFriction:
-    """Return the friction for slips along two axes; `given`, `spared`: see `Yielding`."""
+                whole: Tuple[float, float]) -> LinkFriction:
+    """Return the friction for slips along two axes.
+
+    `given`, `spared`: see `Yielding`; `whole`: slip per force, with that of the joint, m/(N s).
+    """
     mus, slow, soft = law
     holds = dot(bias, axes[0]), dot(bias, axes[1])
     slip, carried = mean_slip(slips, loads), sum(loads)
@@ -151,7 +156,7 @@ def _along_axes(axes: Tuple[Vec3, Vec3], slips: List[Tuple[float, float]], loads
         share = load / carried
         wanted = (share * (holds[0] + given[0] - velocity[0] / soft[0]),
                   share * (holds[1] + given[1] - velocity[1] / soft[1]))
-        parts = limited(wanted, mus, soft, load)
+        parts = limited(wanted, mus, whole, load)
         within = within or parts is wanted
         forces.append(_combined(axes, parts))
         total = total[0] + parts[0], total[1] + parts[1]
