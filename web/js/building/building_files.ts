@@ -26,12 +26,11 @@ const blankAbout = (): BuildingAbout & {folder: string} =>
 export class Files {
   session;
   request;
-  about;
+  about = blankAbout();
 
   constructor(session: Session, request: RequestFunction) {
     this.session = session;
     this.request = request;
-    this.about = blankAbout();
   }
 
   /**

@@ -24,8 +24,6 @@ export class Palette {
   constructor(view: HTMLElement, editor: ModelEditor) {
     this.editor = editor;
     editor.connect.onChange = () => this.update();
-    this.#name = h('input', {type: 'text', 'aria-label': 'Model name', spellcheck: 'false',
-      onchange: () => this.#rename()});
     this.#type = h('select', {'aria-label': 'Joint type', onchange: () => { editor.connect.type = this.#type.value; }},
       ...JOINT_TYPES.map((type) => h('option', {value: type, text: capital(type)})));
     this.#connect = button('Connect', () => editor.connect.toggle(), {title: 'Click the parent link, then the child link'});
@@ -61,7 +59,8 @@ export class Palette {
 
   #flags: {path: 'static'|'allow_auto_disable', input: HTMLInputElement}[] = [];
   #element;
-  #name;
+  #name = h('input', {type: 'text', 'aria-label': 'Model name', spellcheck: 'false',
+    onchange: () => this.#rename()});
   #type;
   #connect;
   #hint = h('p', {class: 'hint', role: 'status'});

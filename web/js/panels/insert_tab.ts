@@ -23,20 +23,11 @@ export function searched(locations: Location[], wanted: string) {
 
 export class InsertTab {
   page;
-  locations: Location[]|null;
+  locations: Location[]|null = null;
 
   constructor(element: HTMLElement, page: Page) {
     this.page = page;
-    this.locations = null;
-    this.#search = h('input', {
-      type: 'search',
-      placeholder: 'Find: chair, kitchen…',
-      'aria-label': 'Find a model',
-      oninput: () => this.#show(),
-    });
     this.#templates = new TemplateCards(page);
-    this.#list = h('div', {class: 'models'});
-    this.#progress = h('div', {class: 'download', role: 'status', hidden: true});
     fill(
       element,
       h(
@@ -69,10 +60,15 @@ export class InsertTab {
     this.#show();
   }
 
-  #search;
+  #search = h('input', {
+    type: 'search',
+    placeholder: 'Find: chair, kitchen…',
+    'aria-label': 'Find a model',
+    oninput: () => this.#show(),
+  });
   #templates;
-  #list;
-  #progress;
+  #list = h('div', {class: 'models'});
+  #progress = h('div', {class: 'download', role: 'status', hidden: true});
   #hide: ReturnType<typeof setTimeout>|0 = 0;
   #closed = new Set(remembered.get('closed-locations', [] as string[]));
 

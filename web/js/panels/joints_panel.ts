@@ -54,20 +54,6 @@ export class JointsPanel {
 
   constructor(element: HTMLElement, page: Page) {
     this.page = page;
-    this.#head = h('h2', {class: 'properties-title'});
-    this.#body = h('div', {class: 'joints-body'});
-    this.#tabs = MODES.map(([mode, title]) =>
-      h('button', {
-        type: 'button',
-        role: 'tab',
-        text: title,
-        dataset: {mode},
-        onclick: () => {
-          this.#mode = mode;
-          this.#build();
-        },
-      }),
-    );
     const tabs = h(
       'div',
       {class: 'tabs', role: 'tablist', 'aria-label': 'Joint control'},
@@ -83,9 +69,20 @@ export class JointsPanel {
     store.listen('log', () => this.#hideLive());
   }
 
-  #head;
-  #body;
-  #tabs;
+  #head = h('h2', {class: 'properties-title'});
+  #body = h('div', {class: 'joints-body'});
+  #tabs = MODES.map(([mode, title]) =>
+    h('button', {
+      type: 'button',
+      role: 'tab',
+      text: title,
+      dataset: {mode},
+      onclick: () => {
+        this.#mode = mode;
+        this.#build();
+      },
+    }),
+  );
   #mode: DriveMode = 'force';
   #shown = false;
   #model: Model|null = null;

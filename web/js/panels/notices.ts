@@ -15,38 +15,28 @@ const SEEN = 'issues-seen';
 
 export class Notices {
   element;
-  entries: {issue: Issue, count: number, at: Date}[];
-  unseen;
-  badge;
+  entries: {issue: Issue, count: number, at: Date}[] = [];
+  unseen = 0;
+  badge = h('span', {class: 'badge', hidden: true});
   /** Unix time in s of the last issue that this tab showed before its page was loaded. */
   #seenBefore = rememberedInTab.get(SEEN, 0);
-  button;
+  button = h(
+    'button',
+    {
+      type: 'button',
+      class: 'plain notices-button',
+      title: 'Messages',
+      'aria-label': 'Messages',
+      'aria-expanded': 'false',
+      onclick: () => this.#toggle(),
+    },
+    icon('messages', 16),
+    this.badge,
+  );
 
   /** @param element  where the cards appear */
   constructor(element: HTMLElement) {
     this.element = element;
-    this.entries = [];
-    this.unseen = 0;
-    this.badge = h('span', {class: 'badge', hidden: true});
-    this.button = h(
-      'button',
-      {
-        type: 'button',
-        class: 'plain notices-button',
-        title: 'Messages',
-        'aria-label': 'Messages',
-        'aria-expanded': 'false',
-        onclick: () => this.#toggle(),
-      },
-      icon('messages', 16),
-      this.badge,
-    );
-    this.#list = h('div', {
-      class: 'notice-list',
-      hidden: true,
-      role: 'dialog',
-      'aria-label': 'All messages',
-    });
     this.#list.addEventListener('keydown', (event) => {
       if (event.key !== 'Escape') return;
       event.stopPropagation();
@@ -55,7 +45,12 @@ export class Notices {
     document.body.append(this.#list);
   }
 
-  #list;
+  #list = h('div', {
+    class: 'notice-list',
+    hidden: true,
+    role: 'dialog',
+    'aria-label': 'All messages',
+  });
 
   /** Shows an issue; one that this tab has shown before is only listed. */
   add(issue: Issue) {

@@ -28,19 +28,10 @@ export type Kept = {series: Series, uses: number, off: () => void,
 
 export class Plots {
   page;
-  span: number|null;
+  span: number|null = 10;
 
   constructor(element: HTMLElement, page: Page, close: () => void) {
     this.page = page;
-    this.span = 10;
-    this.#search = h('input', {
-      type: 'search',
-      placeholder: 'Find a variable',
-      'aria-label': 'Find a variable',
-      oninput: () => this.#showPalette(),
-    });
-    this.#list = h('div', {class: 'plot-variables', role: 'listbox', 'aria-label': 'Variables'});
-    this.#canvases = h('div', {class: 'plot-canvases'});
     const span = h(
       'select',
       {
@@ -99,9 +90,14 @@ export class Plots {
     this.#showPalette();
   }
 
-  #search;
-  #list;
-  #canvases;
+  #search = h('input', {
+    type: 'search',
+    placeholder: 'Find a variable',
+    'aria-label': 'Find a variable',
+    oninput: () => this.#showPalette(),
+  });
+  #list = h('div', {class: 'plot-variables', role: 'listbox', 'aria-label': 'Variables'});
+  #canvases = h('div', {class: 'plot-canvases'});
   #draw;
   #plots: Plot[] = [];
   #series: Map<string, Kept> = new Map();
@@ -282,18 +278,16 @@ export class Plots {
 }
 
 class Plot {
-  canvas;
+  canvas = h('canvas', {class: 'plot-canvas', role: 'img', 'aria-label': 'Plot'});
   element;
   #owner;
-  #legend;
+  #legend = h('div', {class: 'plot-legend'});
   #curves: Curve[] = [];
   /** px from the left. */
   #cursor: number|null = null;
 
   constructor(owner: Plots) {
     this.#owner = owner;
-    this.canvas = h('canvas', {class: 'plot-canvas', role: 'img', 'aria-label': 'Plot'});
-    this.#legend = h('div', {class: 'plot-legend'});
     this.element = h(
       'div',
       {

@@ -29,19 +29,15 @@ export class Properties {
   store;
   request;
   notices;
-  row: Row|null;
-  update;
+  row: Row|null = null;
+  update = onceAFrame(() => this.#show());
 
   constructor(element: HTMLElement, {store, request, notices}: Page) {
     this.element = element;
     this.store = store;
     this.request = request;
     this.notices = notices;
-    this.row = null;
-    this.#body = h('div', {class: 'properties-body'});
-    this.#title = h('h2', {class: 'properties-title'});
     fill(element, this.#title, this.#body);
-    this.update = onceAFrame(() => this.#show());
     // Escape leaves a field that holds nothing new; the next one is the view's.
     element.addEventListener('keydown', (event) => {
       if (event.key === 'Escape') byId('view').focus();
@@ -52,8 +48,8 @@ export class Properties {
     store.listen('poses', () => this.#posesCame());
   }
 
-  #body;
-  #title;
+  #body = h('div', {class: 'properties-body'});
+  #title = h('h2', {class: 'properties-title'});
   #signature: string|null = null;
   #inputs: Entry[] = [];
   #turns = new WeakMap();

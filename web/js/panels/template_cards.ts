@@ -9,16 +9,14 @@ const ICONS: Record<string, string> = {differential_drive: 'car', four_wheels: '
     camera: 'camera', laser: 'topics', imu: 'frames'};
 
 export class TemplateCards {
-  element;
+  #page;
+  #grid = h('div', {class: 'model-grid'});
+  element = h('details', {class: 'section templates', open: true},
+    h('summary', {}, icon('right', 13), h('span', {text: 'Buildings, robots and sensors'})), this.#grid);
 
   constructor(page: Page) {
     this.#page = page;
-    this.element = h('details', {class: 'section templates', open: true},
-      h('summary', {}, icon('right', 13), h('span', {text: 'Buildings, robots and sensors'})), this.#grid);
   }
-
-  #page;
-  #grid = h('div', {class: 'model-grid'});
 
   /** Asks for the templates; called when the tab is first seen. */
   async load() {

@@ -12,11 +12,10 @@ const RATES = [0.1, 0.25, 0.5, 1, 2, 5, 10];
 /** The mean of the last factors of real time, as Gazebo's 20 statistics. */
 class Mean {
   kept;
-  values: number[];
+  values: number[] = [];
 
   constructor(kept = 20) {
     this.kept = kept;
-    this.values = [];
   }
 
   /** @returns the mean with the new one */

@@ -10,12 +10,11 @@ type TopicWindow = {element: HTMLElement, body: HTMLElement, canvas: HTMLCanvasE
 
 export class TopicWindows {
   #page;
-  #container;
+  #container = h('div', {class: 'topic-windows'});
   #windows: Map<string, TopicWindow> = new Map();
 
   constructor(element: HTMLElement, page: Page) {
     this.#page = page;
-    this.#container = h('div', {class: 'topic-windows'});
     element.append(this.#container);
     page.topics.listen('view', ({detail}) => this.#show(detail));
     page.topics.listen('shown', () => this.#closeHidden());

@@ -12,14 +12,6 @@ export class TopicsPanel {
 
   constructor(element: HTMLElement, page: Page) {
     this.page = page;
-    this.#filter = h('input', {
-      type: 'search',
-      placeholder: 'Find a topic or type',
-      'aria-label': 'Find a topic or type',
-      oninput: () => this.#update(),
-    });
-    this.#list = h('ul', {class: 'topic-list', 'aria-label': 'Topics'});
-    this.#sensing = h('input', {type: 'checkbox'});
     this.#sensing.addEventListener('change', () => page.topics.sense(this.#sensing.checked));
     const {speeds} = page.driving;
     const speed = (key: keyof typeof speeds, title: string, unit: string) =>
@@ -52,9 +44,14 @@ export class TopicsPanel {
     }
   }
 
-  #filter;
-  #list;
-  #sensing;
+  #filter = h('input', {
+    type: 'search',
+    placeholder: 'Find a topic or type',
+    'aria-label': 'Find a topic or type',
+    oninput: () => this.#update(),
+  });
+  #list = h('ul', {class: 'topic-list', 'aria-label': 'Topics'});
+  #sensing = h('input', {type: 'checkbox'});
   #off: (() => void)|null = null;
   #signature = '';
   #rows: Map<string, {box: HTMLInputElement, measured: HTMLElement, problem: HTMLElement}> = new Map();

@@ -20,21 +20,12 @@ export class WorldTab {
   page;
   tree;
   properties;
-  update;
+  update = onceAFrame(() => this.#update());
 
   constructor(element: HTMLElement, page: Page) {
     this.store = page.store;
     this.actions = page.actions;
     this.page = page;
-    this.#filter = h('input', {
-      type: 'search',
-      placeholder: 'Find a model or light',
-      'aria-label': 'Find a model or light',
-      oninput: () => {
-        this.#open.add('models').add('lights');
-        this.update();
-      },
-    });
     const tree = h('div', {class: 'world-tree'});
     const properties = h('section', {class: 'properties', 'aria-label': 'Properties'});
     const bar = lyingBar('Height of the properties');
@@ -59,7 +50,6 @@ export class WorldTab {
       decorate: (row) => this.#decorate(row),
     });
     this.properties = new Properties(properties, page);
-    this.update = onceAFrame(() => this.#update());
     for (const event of ['document', 'entity'] as const) this.store.listen(event, this.update);
     this.store.listen('selection', () => this.#followSelection());
     this.store.listen('overlays', () => this.tree.draw());
@@ -77,7 +67,15 @@ export class WorldTab {
     this.update();
   }
 
-  #filter;
+  #filter = h('input', {
+    type: 'search',
+    placeholder: 'Find a model or light',
+    'aria-label': 'Find a model or light',
+    oninput: () => {
+      this.#open.add('models').add('lights');
+      this.update();
+    },
+  });
   #open = new Set(['models', 'groups', 'lights', ...remembered.get('open-rows', [])]);
   /** The row whose properties are shown. */
   #row: Row|null = null;

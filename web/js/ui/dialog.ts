@@ -46,7 +46,6 @@ export class Dialog {
       buttons: DialogButton[], modal?: boolean, name?: string}) {
     const id = `dialog-title-${(numbers += 1)}`;
     this.modal = modal;
-    this.#note = h('div', {class: 'dialog-note', role: 'alert', hidden: true});
     this.#buttons = buttons.map((button) =>
       h('button', {
         type: button.primary ? 'submit' : 'button',
@@ -110,7 +109,7 @@ export class Dialog {
     movable(this.element, head);
   }
 
-  #note;
+  #note = h('div', {class: 'dialog-note', role: 'alert', hidden: true});
   #buttons;
   #atWork = false;
   /** What has the focus first. */

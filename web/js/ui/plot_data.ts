@@ -7,19 +7,15 @@ export const KEPT = 20000;
 /** The samples of one variable, in the order of time. */
 export class Series {
   variable;
-  times: number[];
-  values: number[];
+  times: number[] = [];
+  values: number[] = [];
   /** Sim time when it was last told, s. */
-  told;
+  told = -Infinity;
   /** Whether what it was of has gone. */
-  ended;
+  ended = false;
 
   constructor(variable: string) {
     this.variable = variable;
-    this.times = [];
-    this.values = [];
-    this.told = -Infinity;
-    this.ended = false;
   }
 
   /**

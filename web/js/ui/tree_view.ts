@@ -30,10 +30,10 @@ const indent = (row: TreeRow) => 4 + (row.level - 1) * 14;
 export class Tree<Row extends TreeRow> {
   element;
   handlers;
-  rows: Row[];
+  rows: Row[] = [];
   /** Ids of the rows that are selected. */
-  selected: Set<string>;
-  current;
+  selected: Set<string> = new Set();
+  current = '';
   draw;
 
   /**
@@ -48,11 +48,6 @@ export class Tree<Row extends TreeRow> {
       decorate?: (row: Row) => Child}) {
     this.element = element;
     this.handlers = handlers;
-    this.rows = [];
-    this.selected = new Set();
-    this.current = '';
-    this.#prefix = `row-${Math.random().toString(36).slice(2, 8)}-`;
-    this.#sheet = h('div', {class: 'tree-sheet', role: 'presentation'});
     element.classList.add('tree');
     element.tabIndex = 0;
     element.setAttribute('role', 'tree');
@@ -82,8 +77,8 @@ export class Tree<Row extends TreeRow> {
     element.addEventListener('keydown', (event) => this.#key(event));
   }
 
-  #prefix;
-  #sheet;
+  #prefix = `row-${Math.random().toString(36).slice(2, 8)}-`;
+  #sheet = h('div', {class: 'tree-sheet', role: 'presentation'});
   /** The row where the button was pressed. */
   #pressed: Row|null = null;
   /** A row was pressed, and no key has moved on since. */

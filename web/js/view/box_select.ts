@@ -7,7 +7,7 @@ type Dragged = {x: number, y: number, lastX: number, lastY: number};
 
 export class BoxSelect {
   #store;
-  #element;
+  #element = document.createElement('div');
   #pixelOf;
 
   /** @param pixelOf  the middle of a model in the page, px */
@@ -15,7 +15,6 @@ export class BoxSelect {
       number[]|null) {
     this.#store = store;
     this.#pixelOf = pixelOf;
-    this.#element = document.createElement('div');
     this.#element.className = 'box-select';
     this.#element.hidden = true;
     parent.append(this.#element);

@@ -51,11 +51,15 @@ const target = () => new WebGLRenderTarget(PIXELS, PIXELS, {minFilter: LinearFil
   magFilter: LinearFilter});
 
 export class ContactShadows {
-  /** Lies on the ground. */
-  mesh;
   #camera = new OrthographicCamera();
   #first = target();
   #second = target();
+  /** Lies on the ground. */
+  mesh = new Mesh(new PlaneGeometry(2, 2), new MeshBasicMaterial({color: 0x000000,
+    map: this.#first.texture, transparent: true, opacity: STRENGTH, depthWrite: false,
+    fog: false, toneMapped: false,
+    // Without a factor: in a coarse picture the slope of one pixel is more than a thin floor.
+    polygonOffset: true, polygonOffsetUnits: -4}));
   #depth = new ShaderMaterial({vertexShader: DEPTH_VERTEX, fragmentShader: DEPTH_FRAGMENT, side: 2});
   #blur = new ShaderMaterial({vertexShader: BLUR_VERTEX, fragmentShader: BLUR_FRAGMENT,
     uniforms: {source: {value: null as Texture|null}, way: {value: [0, 0]}},
@@ -67,11 +71,6 @@ export class ContactShadows {
   #reach = 8;
 
   constructor() {
-    this.mesh = new Mesh(new PlaneGeometry(2, 2), new MeshBasicMaterial({color: 0x000000,
-      map: this.#first.texture, transparent: true, opacity: STRENGTH, depthWrite: false,
-      fog: false, toneMapped: false,
-      // Without a factor: in a coarse picture the slope of one pixel is more than a thin floor.
-      polygonOffset: true, polygonOffsetUnits: -4}));
     this.mesh.renderOrder = 0.7;
     this.mesh.visible = false;
     this.#camera.layers.set(CASTERS);

@@ -73,7 +73,7 @@ class HeldKeys {
 
 export class Pointer {
   #parts;
-  #keys;
+  #keys = new HeldKeys(window, (event) => this.#keysChanged(event));
   #touch;
   #press: Press|null = null;
   /** Each stops one listener. */
@@ -83,7 +83,6 @@ export class Pointer {
     this.#parts = parts;
     const {canvas} = parts.stage;
     this.#touch = new Touch(parts, (event) => this.#longPress(event));
-    this.#keys = new HeldKeys(window, (event) => this.#keysChanged(event));
     this.#listen(canvas, 'pointerdown', (event) => this.#down(event));
     this.#listen(canvas, 'pointermove', (event) => this.#move(event));
     this.#listen(canvas, 'pointerup', (event) => this.#up(event));

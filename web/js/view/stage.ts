@@ -43,7 +43,7 @@ function driver() {
 export class NoWebGL extends Error {}
 
 export class Stage {
-  canvas;
+  canvas = document.createElement('canvas');
   software;
   renderer;
   scene = new Scene();
@@ -86,7 +86,7 @@ export class Stage {
   #recent: number[] = [];
   #way = new GiveWay();
   #next: number|null = null;
-  #resizes;
+  #resizes = new ResizeObserver(() => this.#resize());
   #shadowsWanted = true;
   /** Pixels of the page, noted because asking the element costs a layout. */
   #size = [1, 1];
@@ -97,7 +97,6 @@ export class Stage {
    */
   constructor(element: HTMLElement) {
     this.#element = element;
-    this.canvas = document.createElement('canvas');
     this.canvas.className = 'view-canvas';
     Object.assign(this.canvas.style, {position: 'absolute', inset: '0', width: '100%',
       height: '100%', display: 'block', touchAction: 'none'});
@@ -129,7 +128,6 @@ export class Stage {
       this.shadowsChanged();
     });
     element.prepend(this.canvas);
-    this.#resizes = new ResizeObserver(() => this.#resize());
     this.#resizes.observe(element);
     this.#resize();
   }

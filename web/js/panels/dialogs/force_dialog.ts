@@ -24,16 +24,14 @@ function withMagnitude(vector: number[], length: number) {
 
 /** A vector with a magnitude and Clear. */
 class VectorGroup {
-  value;
+  value = [0, 0, 0];
   element;
 
   constructor(title: string, unit: string, changed: () => void) {
-    this.value = [0, 0, 0];
     this.#changed = changed;
     const refuse = (text: string) => {
       this.#note.textContent = text;
     };
-    this.#note = h('span', {class: 'field-note', role: 'alert'});
     this.#vector = makeInput(
       {type: 'vector', label: title, parts: ['x', 'y', 'z'], unit},
       (value) => this.set(value as number[]),
@@ -67,7 +65,7 @@ class VectorGroup {
   }
 
   #changed;
-  #note;
+  #note = h('span', {class: 'field-note', role: 'alert'});
   #vector;
   #size;
 
@@ -97,8 +95,6 @@ class ForceDialog {
       ...links.map((one) => h('option', {value: one, text: one})),
     );
     this.#link.value = links.includes(name) ? name : links[0];
-    this.#force = new VectorGroup('Force', 'N', () => this.preview());
-    this.#torque = new VectorGroup('Torque', 'N m', () => this.preview());
     this.dialog = new Dialog({
       title: 'Apply Force/Torque',
       name: 'force',
@@ -122,8 +118,8 @@ class ForceDialog {
   #actions;
   #request;
   #link;
-  #force;
-  #torque;
+  #force = new VectorGroup('Force', 'N', () => this.preview());
+  #torque = new VectorGroup('Torque', 'N m', () => this.preview());
   #point = [0, 0, 0];
   #atPoint: HTMLInputElement|undefined;
   #steps = 1;

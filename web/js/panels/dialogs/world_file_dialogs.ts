@@ -41,31 +41,26 @@ export function rootLabels(roots: string[]): string[] {
 class FolderList {
   request;
   handlers;
-  listing: Requests['folders']['reply']|null;
-  path;
-  roots;
-  list;
+  listing: Requests['folders']['reply']|null = null;
+  path = h('output', {class: 'folder-path', 'aria-label': 'Folder'});
+  roots = h('div', {class: 'folder-roots', role: 'group', 'aria-label': 'Places'});
+  list = h('div', {class: 'folder-list', role: 'listbox', 'aria-label': 'Files'});
   element;
 
   /** @param create  whether a folder can be created: a file of a new one can be saved, not opened */
   constructor(request: RequestFunction, {onFile, onOpen, onFault}: FolderHandlers, create: boolean) {
     this.request = request;
     this.handlers = {onFile, onOpen, onFault};
-    this.listing = null;
-    this.path = h('output', {class: 'folder-path', 'aria-label': 'Folder'});
     const creates = create && h('button', {type: 'button', text: 'New Folder…', onclick: () => this.#create()});
-    this.roots = h('div', {class: 'folder-roots', role: 'group', 'aria-label': 'Places'});
-    this.list = h('div', {class: 'folder-list', role: 'listbox', 'aria-label': 'Files'});
     this.element = h(
       'div',
       {class: 'folders'},
       this.roots,
       h('div', {class: 'folder-main'}, h('div', {class: 'folder-head'}, this.path, creates), this.list),
     );
-    this.#rove = roving(this.list, '[role=option]', {vertical: true, wrap: false});
   }
 
-  #rove;
+  #rove = roving(this.list, '[role=option]', {vertical: true, wrap: false});
 
   /** Ends when the folder that was asked for last is shown or refused. */
   arrived: Promise<void> = Promise.resolve();
@@ -307,29 +302,21 @@ export async function cloneDialog({store, request}: FileDialogPage) {
 
 /** What a saved world holds besides its models: what the launch file spawned, and its state. */
 class SaveChoices {
-  note;
-  launched;
-  state;
-  spawned;
-  element;
-
-  constructor() {
-    this.note = h('span', {});
-    this.launched = h('input', {type: 'checkbox'});
-    this.state = h('input', {type: 'checkbox'});
-    this.spawned = h('label', {hidden: true}, this.launched, this.note);
-    this.element = h(
-      'div',
-      {class: 'save-choices'},
-      this.spawned,
-      h(
-        'label',
-        {},
-        this.state,
-        'Include sim time and velocities; otherwise the world starts at time 0, at rest',
-      ),
-    );
-  }
+  note = h('span', {});
+  launched = h('input', {type: 'checkbox'});
+  state = h('input', {type: 'checkbox'});
+  spawned = h('label', {hidden: true}, this.launched, this.note);
+  element = h(
+    'div',
+    {class: 'save-choices'},
+    this.spawned,
+    h(
+      'label',
+      {},
+      this.state,
+      'Include sim time and velocities; otherwise the world starts at time 0, at rest',
+    ),
+  );
 
   /** What the server knows, and what was chosen the last time. */
   show({launched = [], chosen = {}}: {launched?: string[], chosen?: {launched?: boolean,
