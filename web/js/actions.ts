@@ -18,7 +18,7 @@ import type {Issue, RequestFunction} from './connection.js';
 import type {Dropped} from './dropped_files.js';
 import type {Operation, Operations, Requests} from './protocol.js';
 import type {Vec3} from './pose.js';
-import type {SceneView} from './view/view.js';
+import type {SceneView} from './view/scene_view.js';
 import type {Turned} from './view/force_arrows.js';
 
 /** What became of a request. */

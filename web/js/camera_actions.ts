@@ -15,10 +15,10 @@ export function cameraActions({store, note, view}: ActionParts) {
     viewFrom: (side: 'top'|'bottom'|'front'|'back'|'left'|'right'|'home') => view()?.viewFrom(side),
     resetView: () => view()?.viewFrom('home'),
     moveTo: (name = store.selection.at(-1)) => name && view()?.moveTo(name),
-    lookInto: (name: string) => view()?.lookInto(name),
+    lookInto: (name: string) => view()?.rig.lookInto(name),
     /** The whole selection; without one all models. */
-    frameSelection: () => view()?.frame(store.selection),
-    frameAll: () => view()?.frame(),
+    frameSelection: () => view()?.rig.frame(store.selection),
+    frameAll: () => view()?.rig.frame(),
     /** The address that opens this page with this camera and selection, to the clipboard. */
     async copyLink() {
       const link = camera.viewLink();
@@ -49,7 +49,7 @@ export function cameraActions({store, note, view}: ActionParts) {
     },
     goToBookmark(at: number) {
       const bookmark = camera.bookmarks()[at];
-      if (bookmark) view()?.flyTo(bookmark.view);
+      if (bookmark) view()?.rig.fly(bookmark.view);
     },
     clearBookmarks: () => remembered.set(bookmarksKey(), []),
     /** What the models of the world cover of the ground, but for planes and one of them. */
@@ -63,7 +63,7 @@ export function cameraActions({store, note, view}: ActionParts) {
       store.setCamera({following: name});
     },
     setProjection(projection: CameraChoices['projection']) {
-      if (projection === 'orthographic' && store.camera.projection !== projection) view()?.keepScale();
+      if (projection === 'orthographic' && store.camera.projection !== projection) view()?.rig.keepScale();
       store.setCamera({projection});
     },
     setController: (controller: CameraChoices['controller']) => store.setCamera({controller}),

@@ -5,7 +5,7 @@ export function fileActions({store, ask, dialog, note, view}: ActionParts) {
   /** Looks at a world once all of it has come: it may come in parts. */
   async function begun(asked: Promise<Outcome>) {
     const outcome = await asked;
-    if (outcome.ok) view()?.beginAnew();
+    if (outcome.ok) view()?.rig.resetForNewWorld();
     return outcome;
   }
 

@@ -52,11 +52,11 @@ export function insertActions({store, ask, edit, dialog, view}: ActionParts) {
       store.setPlacing({kind: 'model', document: model, op: (pose) => ({kind: 'insert', sdf, pose})});
     },
     /** Places the pending entity where it is seen, or in the middle of the view for use without a mouse. */
-    placeHere: () => view()?.placeHere(),
-    turnLeft: () => view()?.turnPlacing(STEP),
-    turnRight: () => view()?.turnPlacing(-STEP),
-    quarterLeft: () => view()?.turnPlacing(QUARTER),
-    quarterRight: () => view()?.turnPlacing(-QUARTER),
+    placeHere: () => view()?.placer.putHere(),
+    turnLeft: () => view()?.placer.turn(STEP),
+    turnRight: () => view()?.placer.turn(-STEP),
+    quarterLeft: () => view()?.placer.turn(QUARTER),
+    quarterRight: () => view()?.placer.turn(-QUARTER),
     /**
      * Inserts the entity that follows the mouse.
      * @param pose  in the world

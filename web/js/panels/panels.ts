@@ -23,7 +23,7 @@ import {WorldTab} from './world_tab.js';
 import type {Actions} from '../actions.js';
 import type {Requests} from '../protocol.js';
 import type {Connection, RequestFunction} from '../connection.js';
-import type {SceneView} from '../view/view.js';
+import type {SceneView} from '../view/scene_view.js';
 import type {Store} from '../store.js';
 import type {DriveSpeeds} from '../drive_keys.js';
 import type {Topics} from '../topics/topics.js';

@@ -290,7 +290,7 @@ export class CameraRig {
   }
 
   /** Looks at another world, of which the address of the page says nothing. */
-  beginAnew() {
+  resetForNewWorld() {
     this.#world = '';
     this.#openWorld('');
   }

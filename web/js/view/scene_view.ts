@@ -54,21 +54,21 @@ function giveWayTo(element: HTMLElement, stage: Stage, signal: AbortSignal) {
   }
 }
 
-export class View {
+export class SceneView {
   available = true;
+  rig;
+  placer;
   #store;
   #stage;
   #stock;
   #gallery;
   #models;
   #lights;
-  #rig;
   #manipulator;
   #forces;
   #boxes;
   #overlays;
   #pointer;
-  #placer;
   #actors;
   #surroundings;
   #marks;
@@ -110,7 +110,7 @@ export class View {
     this.#stock = stock;
     this.#models = models;
     this.#lights = lights;
-    this.#rig = rig;
+    this.rig = rig;
     this.#surroundings = new Surroundings({stage, store, materials});
     this.#actors = new Actors(shared);
     this.#overlays = new Overlays(shared);
@@ -126,9 +126,9 @@ export class View {
     this.#readout = readout(element);
     mountLookSwitch(element, {store, actions});
     this.#preview = new Preview(shared);
-    this.#placer = new Placer(shared);
+    this.placer = new Placer(shared);
     this.#pointer = new Pointer({...shared, manipulator: this.#manipulator,
-      placer: this.#placer, faceSnap: this.#snap, forces: this.#forces,
+      placer: this.placer, faceSnap: this.#snap, forces: this.#forces,
       selector, measure: this.#measure, pivotMark: new PivotMark(shared),
       boxSelect: new BoxSelect(element, store, (name) =>
         // The box never selects the ground.
@@ -140,7 +140,7 @@ export class View {
     const kept = savedConfiguration();
     Object.assign(store.overlays.scene, {simplifiedMeshes: stage.software}, kept?.overlays);
     meshes.simplify(store.overlays.scene.simplifiedMeshes);
-    this.#rig.apply();
+    this.rig.apply();
     // The world may have come while the view's modules were on their way.
     if (store.document) store.emit('document');
   }
@@ -180,9 +180,9 @@ export class View {
   }
 
   #connect(batches: Batches) {
-    this.#models.onArrived = () => this.#rig.frameAll();
+    this.#models.onArrived = () => this.rig.frameAll();
     this.#models.onMoved = (ids) => {
-      this.#rig.follow();
+      this.rig.follow();
       this.#boxes.follow(ids);
       this.#overlays.follow(ids);
       this.#marks.follow(ids);
@@ -192,19 +192,19 @@ export class View {
     };
     this.#manipulator.onMoved = () => this.#boxes.update();
     this.#manipulator.onNumbers = (text) => this.#readout(text);
-    this.#rig.onMoved = () => {
+    this.rig.onMoved = () => {
       this.#manipulator.update();
       this.#measure.follow();
-      this.#cube.update(this.#rig.view);
+      this.#cube.update(this.rig.view);
     };
-    this.#stage.onResize = () => this.#rig.apply();
+    this.#stage.onResize = () => this.rig.apply();
     this.#stage.onQuality = (full) => this.#lights.soften(full);
     this.#stage.onBeforeDraw = (now, full) => {
       this.#markFirstPicture();
       this.#models.catchUp();
       this.#boxes.catchUp();
       if (batches.prepare(!full)) this.#stage.owe();
-      const moving = this.#rig.advance(now);
+      const moving = this.rig.advance(now);
       this.#forces.update();
       this.#coverWithShadow();
       return moving;
@@ -220,39 +220,25 @@ export class View {
 
   /** Far-away lights throw shadows about the middle of the picture. */
   #coverWithShadow() {
-    const {position} = this.#rig.view;
+    const {position} = this.rig.view;
     const [, , height] = position;
-    const ahead = subtract(this.#rig.ahead, position).map((part) => part / 10);
+    const ahead = subtract(this.rig.ahead, position).map((part) => part / 10);
     const down = -ahead[2];
-    const distance = this.#rig.orthographic ? 10
+    const distance = this.rig.orthographic ? 10
       : Math.min(down > 0.05 && height > 0 ? height / down : 15, 40);
     const centre = position.map((part, index) => part + ahead[index] * distance);
     this.#lights.cover(centre, Math.max(distance * 1.3, 2));
-    this.#surroundings.cover(centre, this.#rig.orthographic
-      ? Math.max(distance, this.#stage.width / this.#rig.zoomLevel) : distance);
+    this.#surroundings.cover(centre, this.rig.orthographic
+      ? Math.max(distance, this.#stage.width / this.rig.zoomLevel) : distance);
   }
 
   // ---- what actions ask
 
   /** Where the camera is. */
-  get camera() { return this.#rig.view; }
+  get camera() { return this.rig.view; }
 
   /** What the measure tool says, for tests. */
   get measured() { return this.#measure.texts; }
-
-  /** Places the pending entity where it is seen, or in the middle of the view for use without a mouse. */
-  placeHere() {
-    this.#placer.putHere();
-  }
-
-  /** Turns the pending entity. @param angle  rad, counterclockwise from above */
-  turnPlacing(angle: number) {
-    this.#placer.turn(angle);
-  }
-
-  flyTo(view: import('../camera_math.js').View) {
-    this.#rig.fly(view);
-  }
 
   viewFrom(side: string) {
     const centres = this.#store.selection.flatMap((name) => {
@@ -262,33 +248,14 @@ export class View {
     const centre = centres.length
       ? [0, 1, 2].map((i) => centres.reduce((sum, one) => sum + one[i], 0) / centres.length)
       : [0, 0, 0];
-    this.#rig.flyToSide(side, centre);
-  }
-
-  beginAnew() {
-    this.#rig.beginAnew();
+    this.rig.flyToSide(side, centre);
   }
 
   moveTo(name: string) {
     const box = this.#models.bounds(name);
     const pose = this.#models.shownPose(name);
-    if (box) this.#rig.flyTo(box);
-    else if (pose) this.#rig.flyNear(pose.slice(0, 3));
-  }
-
-  /** Shows the inside of a model from above. */
-  lookInto(name: string) {
-    this.#rig.lookInto(name);
-  }
-
-  /** Shows models or links as a whole; all models where none is given. */
-  frame(names?: string[]) {
-    this.#rig.frame(names);
-  }
-
-  /** Before a switch to an orthographic view: the orbit target keeps its size. */
-  keepScale() {
-    this.#rig.keepScale();
+    if (box) this.rig.flyTo(box);
+    else if (pose) this.rig.flyNear(pose.slice(0, 3));
   }
 
   #centre(name: string) {
@@ -342,7 +309,7 @@ export class View {
   /** Remembers camera and overlays for worlds that have no camera of their own. */
   saveConfiguration() {
     const {projection, controller} = this.#store.camera;
-    remembered.set('configuration', {...this.#rig.view, projection, controller,
+    remembered.set('configuration', {...this.rig.view, projection, controller,
       overlays: this.#store.overlays.scene});
   }
 

@@ -1,5 +1,5 @@
 /** Puts the 3D view into the page, or a notice if WebGL is not available. */
-import {View} from './scene_view.js';
+import {SceneView} from './scene_view.js';
 import {NoWebGL} from './stage.js';
 import type {Actions} from '../actions.js';
 import type {Connection} from '../connection.js';
@@ -29,8 +29,6 @@ export interface ViewParts {
   picker: Picker;
 }
 
-export type SceneView = InstanceType<typeof View>;
-
 /** `resolveUrl` returns where a mesh or picture is loaded from; without it, from the simulator. */
 export type ViewOptions = Pick<ViewParts, 'store'|'actions'|'connection'|'watches'> &
     {topics: Topics, resolveUrl?: (url: string) => string};
@@ -57,7 +55,7 @@ function withoutWebGL(element: HTMLElement) {
 export function mountView(element: HTMLElement, parts: ViewOptions): Pick<SceneView,
     'fps'|'available'|'thumbnail'|'redraw'|'dispose'> {
   try {
-    return new View(element, parts);
+    return new SceneView(element, parts);
   } catch (error) {
     if (!(error instanceof NoWebGL)) throw error;
     return withoutWebGL(element);
