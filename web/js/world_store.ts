@@ -246,13 +246,18 @@ export class WorldStore extends Emitter<StoreEvents> {
    * @returns pose7
    */
   worldPose(name: string): number[]|null {
+    return this.poseWith(name, (id) => this.poses.get(id));
+  }
+
+  /** As `worldPose`, for links at other places. @param linkPose  pose7 in the world by id of a link */
+  poseWith(name: string, linkPose: (id: number) => ArrayLike<number>|null|undefined): number[]|null {
     const entity = this.entity(name);
     if (!entity) return null;
     if (entity.kind === 'light') return [...entity.light.pose];
     const link = entity.kind === 'link' ? entity.link : canonicalLink(entity.model);
-    const pose = link && this.poses.get(link.id);
+    const pose = link && linkPose(link.id);
     if (!link || !pose) return [...entity.model.pose];
-    return entity.kind === 'link' ? [...pose] : compose(pose, inverse(link.pose));
+    return entity.kind === 'link' ? Array.from(pose) : compose(pose, inverse(link.pose));
   }
 
   /** Whether this page shows a log instead of the running world. */

@@ -1,6 +1,5 @@
 /** The world's models in the scene: built from the document, moved by pose frames. */
 import {Box3, Matrix4} from 'three';
-import {canonicalLink} from '../world_store.js';
 import {compose, displacement, inverse} from '../pose.js';
 import {ModelView, radiusOf} from './link_views.js';
 import {matrixOf} from './three_convert.js';
@@ -165,13 +164,7 @@ export class Models {
    * @returns pose7
    */
   shownPose(name: string): number[]|null {
-    const entity = this.#store.entity(name);
-    if (!entity) return null;
-    if (entity.kind === 'light') return [...entity.light.pose];
-    const link = entity.kind === 'link' ? entity.link : canonicalLink(entity.model);
-    const pose = link && this.#linkPose(link.id);
-    if (!link || !pose) return [...entity.model.pose];
-    return entity.kind === 'link' ? Array.from(pose) : compose(pose, inverse(link.pose));
+    return this.#store.poseWith(name, (id) => this.#linkPose(id));
   }
 
   /** The matrix of a link as it is shown. */
