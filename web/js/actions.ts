@@ -4,7 +4,6 @@
  * Actions that ask the simulator resolve to `{ok, value, issues}` and never reject; what was
  * refused is also put into the store's issues, unless a dialog that shows it itself asks for `quiet`.
  */
-import {alignMoves} from './align.js';
 import {arrangeActions} from './arrange_actions.js';
 import {cameraActions} from './camera_actions.js';
 import {RequestError} from './connection.js';
@@ -12,7 +11,6 @@ import {fileActions} from './file_actions.js';
 import {insertActions} from './insert_actions.js';
 import {linkMoves, linkRemovals} from './model_edits.js';
 import {NOTHING} from './nothing.js';
-import type {AlignChoice} from './align.js';
 import type {CopiedItem, EntityRef, Mode, OverlayFlag, Store} from './store.js';
 import type {Issue, RequestFunction} from './connection.js';
 import type {Dropped} from './dropped_files.js';
@@ -120,7 +118,6 @@ export function createActions({store, connection}: {store: Store,
     },
     scale: (name: string, factors: Vec3) => edit({kind: 'scale', name, scale: factors}),
     group: (ops: Operation[], label: string) => edit({kind: 'group', ops, label}),
-    reset: (what: 'time'|'poses'|'world') => edit({kind: 'reset', what}),
     resetPoses: () => edit({kind: 'reset', what: 'poses'}),
     resetWorld: () => edit({kind: 'reset', what: 'world'}),
     resetTime: () => edit({kind: 'reset', what: 'time'}),
@@ -166,18 +163,6 @@ export function createActions({store, connection}: {store: Store,
     scaleMode: () => manipulate('scale'),
     snapMode: () => store.setMode(store.mode === 'snap' ? 'select' : 'snap'),
     measureMode: () => store.setMode(store.mode === 'measure' ? 'select' : 'measure'),
-
-    // ---- align
-    /** Shows where the models would go; `null` ends the preview. */
-    alignPreview(choice: AlignChoice|null) {
-      view?.setPreviewPoses(choice ? alignPoses(choice) : null);
-    },
-    async align(choice: AlignChoice): Promise<Outcome> {
-      view?.setPreviewPoses(null);
-      const poses = alignPoses(choice);
-      if (!view || !Object.keys(poses).length) return NOTHING;
-      return view.carry(poses, edit({kind: 'move', poses, label: 'align'}));
-    },
 
     ...camera,
 
@@ -297,15 +282,6 @@ export function createActions({store, connection}: {store: Store,
   function manipulate(mode: Mode) {
     if (store.camera.following) note('Not available while following a model; press Esc to stop following.');
     else store.setMode(mode);
-  }
-
-  function alignPoses(choice: AlignChoice) {
-    const names = [...new Set(store.selection.flatMap((name) => store.split(name)[0]?.name ?? []))];
-    const boxes = names.flatMap((name) => {
-      const [pose, bounds] = [store.worldPose(name), view?.bounds(name)];
-      return pose && bounds ? [{name, pose, ...bounds}] : [];
-    });
-    return alignMoves(boxes, choice);
   }
 
   return actions;

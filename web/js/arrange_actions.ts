@@ -1,17 +1,29 @@
-/** Several of a kind, equal gaps, and what is hidden or locked in this browser. */
+/** Several of a kind, alignment, equal gaps, and what is hidden or locked in this browser. */
+import {alignMoves} from './align.js';
 import {arrayOffsets, clearSpacing, copiesIn, distributeMoves, MOST_COPIES} from './arrange.js';
 import {membersOf, withGroups} from './model_groups.js';
 import {NOTHING} from './nothing.js';
 import {isGround} from './selected_model.js';
 import {add, orientation, position} from './pose.js';
+import type {AlignChoice} from './align.js';
 import type {ActionParts, Outcome} from './actions.js';
 import type {Operation} from './protocol.js';
 import type {Pose7, Vec3} from './pose.js';
 
 export function arrangeActions({store, ask, edit, dialog, note, view}: ActionParts) {
-  /** The selected models, those of selected links, too. */
-  const chosenModels = () =>
-    [...new Set(store.selection.flatMap((name) => store.split(name)[0]?.name ?? []))];
+  /** Poses and bounding boxes of the selected models, those of selected links, too. */
+  const chosenBoxes = () =>
+    [...new Set(store.selection.flatMap((name) => store.split(name)[0]?.name ?? []))].flatMap((name) => {
+      const [pose, bounds] = [store.worldPose(name), view()?.bounds(name)];
+      return pose && bounds ? [{name, pose, ...bounds}] : [];
+    });
+
+  /** Moves models in one step of the history; the view shows them there at once. */
+  async function moveTogether(poses: Record<string, Pose7>, label: string): Promise<Outcome> {
+    const shown = view();
+    if (!shown || !Object.keys(poses).length) return NOTHING;
+    return shown.carry(poses, edit({kind: 'move', poses, label}));
+  }
 
   /** The selected models and lights; of links, their models. */
   const chosen = () => [...new Set(store.selection.flatMap((name) => store.wholeOf(name) ?? []))];
@@ -87,17 +99,18 @@ export function arrangeActions({store, ask, edit, dialog, note, view}: ActionPar
       if (added > MOST_COPIES) throw new RangeError(`An array has at most ${MOST_COPIES} copies.`);
       return copies(names, arrayOffsets(counts, spacing), `Array of ${added + 1} ${names.join(', ')}`);
     },
+    /** Shows where the models would go; `null` ends the preview. */
+    alignPreview: (choice: AlignChoice|null) =>
+      view()?.setPreviewPoses(choice ? alignMoves(chosenBoxes(), choice) : null),
+    align(choice: AlignChoice) {
+      view()?.setPreviewPoses(null);
+      return moveTogether(alignMoves(chosenBoxes(), choice), 'align');
+    },
     /** Equal gaps between the selected models. */
     async distribute(axis: 'x'|'y'|'z'): Promise<Outcome> {
-      const shown = view();
-      const boxes = chosenModels().flatMap((name) => {
-        const [pose, bounds] = [store.worldPose(name), shown?.bounds(name)];
-        return pose && bounds ? [{name, pose, ...bounds}] : [];
-      });
+      const boxes = chosenBoxes();
       if (boxes.length < 3) note('Select at least three models to distribute.');
-      const poses = distributeMoves(boxes, axis);
-      if (!shown || !Object.keys(poses).length) return NOTHING;
-      return shown.carry(poses, edit({kind: 'move', poses, label: 'distribute'}));
+      return moveTogether(distributeMoves(boxes, axis), 'distribute');
     },
     distributeX: () => arrange.distribute('x'),
     distributeY: () => arrange.distribute('y'),

@@ -134,7 +134,7 @@ export class TimeBar {
         class: 'edits',
         title: 'Reset time',
         'aria-label': 'Reset time',
-        onclick: () => this.actions.reset('time'),
+        onclick: () => this.actions.resetTime(),
       },
       icon('reset', 16),
     );
