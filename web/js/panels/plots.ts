@@ -5,7 +5,7 @@
 import {saveBlob} from '../actions.js';
 import {elementsOf, fill, h, onActivate, onceAFrame, roving} from '../ui/dom.js';
 import {icon} from '../ui/icons.js';
-import {CURVE_COLORS, drawPlot} from '../ui/plot_canvas.js';
+import {drawPlot, freeColor, legendEntry} from '../ui/plot_canvas.js';
 import {csvOf, Series, take} from '../ui/plot_data.js';
 import {isTopicField, topicVariables, variablesOf} from './plot_variables.js';
 import type {Curve} from '../ui/plot_canvas.js';
@@ -317,9 +317,7 @@ class Plot {
 
   add(variable: string) {
     if (!variable || this.#curves.some(({series}) => series.variable === variable)) return;
-    const used = new Set(this.#curves.map(({color}) => color));
-    const color = CURVE_COLORS.find((one) => !used.has(one)) ?? CURVE_COLORS[0];
-    this.#curves.push({series: this.#owner.series(variable), color});
+    this.#curves.push({series: this.#owner.series(variable), color: freeColor(this.#curves)});
     this.#showLegend();
     this.#owner.redraw();
   }
@@ -334,24 +332,7 @@ class Plot {
   #showLegend() {
     fill(
       this.#legend,
-      ...this.#curves.map((curve) =>
-        h(
-          'span',
-          {class: 'plot-key'},
-          h('i', {style: `background:${curve.color}`}),
-          curve.series.variable,
-          h(
-            'button',
-            {
-              type: 'button',
-              class: 'plain',
-              'aria-label': `Remove ${curve.series.variable}`,
-              onclick: () => this.#drop(curve),
-            },
-            icon('close', 10),
-          ),
-        ),
-      ),
+      ...this.#curves.map((curve) => legendEntry(curve, () => this.#drop(curve))),
       !this.#curves.length &&
         h('span', {class: 'soft', text: 'Click or drop variables to plot them'}),
       h('span', {class: 'spring'}),

@@ -1,7 +1,6 @@
 /** The plot of a replay: curves of the numbers of recorded topics, with the time of the log. */
 import {fill, h, onceAFrame} from '../ui/dom.js';
-import {icon} from '../ui/icons.js';
-import {CURVE_COLORS, drawPlot} from '../ui/plot_canvas.js';
+import {drawPlot, freeColor, legendEntry} from '../ui/plot_canvas.js';
 import {Series} from '../ui/plot_data.js';
 import {decodeTopicFrame} from '../topics/topic_frames.js';
 import {numbersOf} from '../topics/view_numbers.js';
@@ -58,9 +57,7 @@ export class LogPlot {
   #add(variable: string) {
     const series = this.#series.get(variable);
     if (!series || this.#curves.some((one) => one.series === series)) return;
-    const used = new Set(this.#curves.map(({color}) => color));
-    const color = CURVE_COLORS.find((one) => !used.has(one)) ?? CURVE_COLORS[0];
-    this.#curves.push({series, color});
+    this.#curves.push({series, color: freeColor(this.#curves)});
     this.#showLegend();
   }
 
@@ -71,10 +68,7 @@ export class LogPlot {
 
   #showLegend() {
     this.#canvas.hidden = !this.#curves.length;
-    fill(this.#legend, this.#choice(), ...this.#curves.map((curve) =>
-      h('span', {class: 'plot-key'}, h('i', {style: `background:${curve.color}`}), curve.series.variable,
-        h('button', {type: 'button', class: 'plain', 'aria-label': `Remove ${curve.series.variable}`,
-          onclick: () => this.#remove(curve)}, icon('close', 10)))));
+    fill(this.#legend, this.#choice(), ...this.#curves.map((curve) => legendEntry(curve, () => this.#remove(curve))));
     this.#draw();
   }
 

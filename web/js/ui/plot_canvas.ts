@@ -1,11 +1,12 @@
 /** Draws curves with their axes onto a canvas. */
-import {themeColor} from './dom.js';
+import {h, themeColor} from './dom.js';
+import {icon} from './icons.js';
 import {numberText} from './text_format.js';
 import {extent, ticks} from './plot_data.js';
 import type {Series} from './plot_data.js';
 
 /** Told apart by eyes that see no red or green as well; readable on dark and light. */
-export const CURVE_COLORS = [
+const CURVE_COLORS = [
   '#e8812a',
   '#3f93e0',
   '#36a869',
@@ -22,6 +23,16 @@ type PlotBox = {left: number, top: number, width: number, height: number};
 /** What the axes show. */
 export type Range = {from: number, to: number, low: number, high: number};
 export type Drawn = {box: PlotBox, range: Range};
+
+/** A color that no curve has; the first one if all are taken. */
+export const freeColor = (curves: Curve[]) =>
+  CURVE_COLORS.find((color) => curves.every((curve) => curve.color !== color)) ?? CURVE_COLORS[0];
+
+/** An entry of a legend. @param remove  called when the curve is to be removed */
+export function legendEntry({series: {variable}, color}: Curve, remove: () => void) {
+  return h('span', {class: 'plot-key'}, h('i', {style: `background:${color}`}), variable,
+    h('button', {type: 'button', class: 'plain', 'aria-label': `Remove ${variable}`, onclick: remove}, icon('close', 10)));
+}
 
 const LEFT = 62;
 const BOTTOM = 22;
