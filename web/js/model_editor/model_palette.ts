@@ -1,5 +1,5 @@
 /** The palette of the model editor: what can be added, and what the model has. */
-import {Dialog, faultText, labelled, movable} from '../ui/dialog.js';
+import {addPanel, Dialog, faultText, labelled} from '../ui/dialog.js';
 import {fill, h} from '../ui/dom.js';
 import {icon} from '../ui/icons.js';
 import {jointDialog} from './joint_dialog.js';
@@ -9,7 +9,7 @@ import {Schematic} from './schematic.js';
 import {SOLID_SHAPES, solidModel} from './solids.js';
 import {svgDialog} from './svg_dialog.js';
 import {pluginFor, PLUGIN_TITLES} from './plugin_templates.js';
-import type {Joint, Model, Operation, SolidShape} from '../protocol.js';
+import type {Joint, Model, Operation, Operations, SolidShape} from '../protocol.js';
 import type {ModelEditor} from './model_editor.js';
 
 const capital = (text: string) => text[0].toUpperCase() + text.slice(1);
@@ -37,8 +37,8 @@ export class Palette {
       h('h3', {text: 'Add link'}),
       h('div', {class: 'tools'}, ...SOLID_SHAPES.map((shape) =>
         button(capital(shape), () => this.#startPlacing(shape), {'aria-label': `Link: ${shape}`})),
-      button('Mesh…', () => this.#addMesh()),
-      button('SVG…', () => this.#addSvg(), {title: 'Extrude the outline of a drawing'}), button('Model…', () => this.#nest())),
+      button('Mesh…', () => meshDialog(editor.request, (uri) => this.#addLink({uri}))),
+      button('SVG…', () => svgDialog((polyline) => this.#addLink({polyline})), {title: 'Extrude the outline of a drawing'}), button('Model…', () => this.#nest())),
       this.#ofModel(h('h3', {text: 'Joints'})),
       this.#ofModel(h('div', {class: 'row'}, this.#type, this.#connect)),
       this.#ofModel(button('Schematic', () => this.schematic.toggle(), {title: 'Links and joints as a diagram (Ctrl+E)'})),
@@ -48,12 +48,7 @@ export class Palette {
         button('Inertia…', () => this.#inertia(this.model?.name), {'aria-label': 'Inertia of all links'}))),
       this.#ofModel(h('div', {class: 'tools'}, button('Save', () => editor.save(), {class: 'primary', title: 'Save (Ctrl+S)'}),
         button('Save As…', () => editor.save(true)))));
-    movable(this.#element, header);
-    // The view's mouse and keys are not for the palette.
-    for (const event of ['pointerdown', 'wheel', 'dblclick']) {
-      this.#element.addEventListener(event, (one) => one.stopPropagation());
-    }
-    view.append(this.#element);
+    addPanel(view, this.#element, header);
     this.schematic = new Schematic(view, editor, (joint) => this.model && this.#editJoint(this.model, joint));
   }
 
@@ -162,20 +157,10 @@ export class Palette {
     this.update();
   }
 
-  #addMesh() {
-    const {store, request} = this.editor;
-    return meshDialog(request, async (uri) => {
-      const {name} = await request('edit', {op: {kind: 'add_link', model: store.modelEditing?.name ?? null, uri}});
-      this.editor.actions.placed(name ?? '');
-    });
-  }
-
-  #addSvg() {
-    const {store, request} = this.editor;
-    return svgDialog(async (polyline) => {
-      const {name} = await request('edit', {op: {kind: 'add_link', model: store.modelEditing?.name ?? null, polyline}});
-      this.editor.actions.placed(name ?? '');
-    });
+  async #addLink(shape: Pick<Operations['add_link'], 'uri'|'polyline'>) {
+    const {store, request, actions} = this.editor;
+    const {name} = await request('edit', {op: {kind: 'add_link', model: store.modelEditing?.name ?? null, ...shape}});
+    actions.placed(name ?? '');
   }
 
   #nest() {

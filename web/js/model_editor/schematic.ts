@@ -1,6 +1,6 @@
 /** The schematic view of the model editor: links as boxes, joints as lines between them. */
 import {svg} from '../ui/svg.js';
-import {movable} from '../ui/dialog.js';
+import {addPanel} from '../ui/dialog.js';
 import {fill, h, onActivate} from '../ui/dom.js';
 import {icon} from '../ui/icons.js';
 import {BOX, schematicOf} from './schematic_layout.js';
@@ -20,11 +20,7 @@ export class Schematic {
     const header = h('header', {title: 'Drag to move'}, h('h2', {text: 'Schematic'}), h('button', {type: 'button',
       class: 'plain', 'aria-label': 'Close schematic', onclick: () => this.toggle()}, icon('close')));
     this.#element = h('section', {class: 'model-schematic', 'aria-label': 'Schematic', hidden: true}, header, this.#sheet);
-    movable(this.#element, header);
-    for (const event of ['pointerdown', 'wheel', 'dblclick']) {
-      this.#element.addEventListener(event, (one) => one.stopPropagation());
-    }
-    view.append(this.#element);
+    addPanel(view, this.#element, header);
   }
 
   #editor;

@@ -220,7 +220,7 @@ export function labelled(label: string, input: Node, more?: Node) {
 }
 
 /** Lets the mouse move an element by a part of it. */
-export function movable(element: HTMLElement, handle: HTMLElement) {
+function movable(element: HTMLElement, handle: HTMLElement) {
   handle.addEventListener('pointerdown', (event) => {
     if (event.button !== 0 || closestTo(event, 'button')) return;
     const box = element.getBoundingClientRect();
@@ -239,4 +239,11 @@ export function movable(element: HTMLElement, handle: HTMLElement) {
     handle.addEventListener('pointermove', move);
     handle.addEventListener('pointerup', end);
   });
+}
+
+/** Puts a movable panel over the view, which does not receive the mouse events of the panel. @param handle  moves it */
+export function addPanel(view: HTMLElement, panel: HTMLElement, handle: HTMLElement) {
+  movable(panel, handle);
+  for (const type of ['pointerdown', 'wheel', 'dblclick']) panel.addEventListener(type, (event) => event.stopPropagation());
+  view.append(panel);
 }
