@@ -3,12 +3,15 @@ import {
   BoxGeometry, BufferAttribute, BufferGeometry, ConeGeometry, CylinderGeometry, EdgesGeometry,
   Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, Quaternion, SphereGeometry, Vector3,
 } from 'three';
+import {place} from './three_convert.js';
 import type {CameraRig} from './camera_rig.js';
-import type {ColorRepresentation, Material, Object3D} from 'three';
+import type {Box3, ColorRepresentation, Material, Object3D} from 'three';
 import type {Numbers, Vec3} from '../pose.js';
 import type {Stage} from './stage.js';
 
 const UP = new Vector3(0, 0, 1);
+/** Edge of the box around a light, m. */
+export const ICON_SIZE = 0.7;
 const RGB = [[1, 0.15, 0.15], [0.2, 0.8, 0.2], [0.25, 0.45, 1]];
 
 /** A material for marks that show through bodies. */
@@ -64,6 +67,17 @@ export function point(group: Object3D, direction: Numbers) {
 
 /** The edges of a box of size 1. */
 export const boxLines = (material: Material) => new LineSegments(boxEdges, material);
+
+/** Fits the edges of a box around bounds in the axes of a pose, with a margin; around an icon without bounds. */
+export function fitBox(box: LineSegments, pose: Numbers, bounds: Box3|null, margin: number) {
+  place(box, pose);
+  if (!bounds) {
+    box.scale.setScalar(ICON_SIZE);
+    return;
+  }
+  bounds.getSize(box.scale).addScalar(margin);
+  box.position.add(bounds.getCenter(new Vector3()).applyQuaternion(box.quaternion));
+}
 
 /** Frees the geometries that only this object has (`userData.single`). */
 export function free(root: Object3D) {

@@ -2,13 +2,11 @@
 import {Color, LineBasicMaterial, Vector3} from 'three';
 import {colorOf} from '../person_color.js';
 import {label} from './label_sprite.js';
-import {boxLines} from './markers.js';
-import {place} from './three_convert.js';
+import {boxLines, fitBox, ICON_SIZE} from './markers.js';
 import type {LineSegments, Sprite} from 'three';
 import type {Person} from '../protocol.js';
 import type {ViewParts} from './view.js';
 
-const LIGHT_SIZE = 0.7;
 const MARGIN = 0.03;
 
 export class PeopleMarks {
@@ -63,15 +61,9 @@ export class PeopleMarks {
       const pose = this.#models.shownPose(name);
       box.visible = text.visible = pose !== null;
       if (!pose) continue;
-      place(box, pose);
-      const bounds = this.#models.bounds(name, pose);
-      const size = bounds?.getSize(new Vector3()).toArray() ?? Array(3).fill(LIGHT_SIZE);
-      box.scale.set(size[0] + MARGIN, size[1] + MARGIN, size[2] + MARGIN);
-      if (bounds) {
-        box.position.add(bounds.getCenter(new Vector3()).applyQuaternion(box.quaternion));
-      }
+      fitBox(box, pose, this.#models.bounds(name, pose), MARGIN);
       text.position.copy(box.position);
-      text.position.z += this.#models.bounds(name)?.getSize(new Vector3()).z ?? LIGHT_SIZE;
+      text.position.z += this.#models.bounds(name)?.getSize(new Vector3()).z ?? ICON_SIZE;
     }
   }
 }

@@ -1,12 +1,10 @@
 /** White wire boxes round what is selected, aligned with it. */
-import {LineBasicMaterial, Vector3} from 'three';
-import {place} from './three_convert.js';
-import {boxLines} from './markers.js';
+import {LineBasicMaterial} from 'three';
+import {boxLines, fitBox} from './markers.js';
 import type {LineSegments} from 'three';
 import type {ViewParts} from './view.js';
 
 const material = new LineBasicMaterial({color: 0xffffff, fog: false});
-const LIGHT_SIZE = 0.7;
 
 export class SelectionBoxes {
   #store;
@@ -72,15 +70,6 @@ export class SelectionBoxes {
   #fit(box: LineSegments, name: string) {
     const pose = this.#models.shownPose(name);
     box.visible = pose !== null;
-    if (!pose) return;
-    place(box, pose);
-    const bounds = this.#models.bounds(name, pose);
-    if (!bounds) {
-      box.scale.setScalar(LIGHT_SIZE);
-      return;
-    }
-    const size = bounds.getSize(new Vector3());
-    box.scale.set(size.x + 0.01, size.y + 0.01, size.z + 0.01);
-    box.position.add(bounds.getCenter(new Vector3()).applyQuaternion(box.quaternion));
+    if (pose) fitBox(box, pose, this.#models.bounds(name, pose), 0.01);
   }
 }
