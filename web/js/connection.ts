@@ -57,6 +57,10 @@ export class RequestError extends Error {
   }
 }
 
+/** Whether a request was refused with an issue of this code. */
+export const hasIssue = (fault: unknown, code: string) =>
+  fault instanceof RequestError && fault.issues.some((issue) => issue.code === code);
+
 /** Milliseconds to wait before the n-th attempt in a row to connect again, n from 0. */
 export function backOff(attempt: number) {
   return Math.min(250 * 2 ** attempt, 4000);

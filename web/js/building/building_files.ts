@@ -1,6 +1,7 @@
 /** Saving, opening and leaving: the windows that ask, and the requests behind them. */
 import {Dialog, ask, faultText, labelled} from '../ui/dialog.js';
 import {h} from '../ui/dom.js';
+import {aboutFields, NO_AUTHOR} from '../saved_models.js';
 import {emptyPlan} from './plan.js';
 import {rescaled, withImage} from './draw_tools.js';
 import type {BuildingAbout, BuildingOptions} from '../protocol.js';
@@ -20,13 +21,12 @@ const folderName = (name: string) => name.trim().split(/\s+/).join('_');
 /** The folder that contains a building's folder. */
 const parentOf = (path: string) => path.slice(0, path.lastIndexOf('/'));
 
-const blankAbout = (): BuildingAbout & {folder: string} =>
-    ({folder: '', version: '1.0', description: '', author: '', email: ''});
+const NOT_SAVED: BuildingAbout & {folder: string} = {folder: '', ...NO_AUTHOR};
 
 export class Files {
   session;
   request;
-  about = blankAbout();
+  about = NOT_SAVED;
 
   constructor(session: Session, request: RequestFunction) {
     this.session = session;
@@ -61,20 +61,14 @@ export class Files {
     const text = (value: string, more = {}) => h('input', {type: 'text', value, ...more});
     const name = text(session.plan.name, {placeholder: 'Untitled', autofocus: true});
     const folder = text(about.folder, {placeholder: '~/building_editor_models'});
-    const fields = {version: text(about.version), description: text(about.description),
-      author: text(about.author), email: text(about.email)};
+    const more = aboutFields(about);
     const overwrite = h('input', {type: 'checkbox'});
     const replace = h('label', {hidden: true}, overwrite, 'Overwrite the existing building');
     const dialog = new Dialog({
       title: 'Save Building', name: 'building-save',
-      content: [labelled('Model name', name), labelled('Location', folder), replace,
-        h('details', {}, h('summary', {text: 'Advanced'}), labelled('Version', fields.version),
-          labelled('Description', fields.description), labelled('Author', fields.author),
-          labelled('E-mail', fields.email))],
+      content: [labelled('Model name', name), labelled('Location', folder), replace, more.element],
       buttons: [{title: 'Cancel'}, {title: 'Save', primary: true, run: async () => {
-        const chosen = {folder: folder.value.trim(), version: fields.version.value,
-          description: fields.description.value, author: fields.author.value,
-          email: fields.email.value};
+        const chosen = {folder: folder.value.trim(), ...more.values()};
         const own = this.#isOwn(name.value, chosen.folder);
         try {
           await this.#write(name.value, {...chosen, overwrite: overwrite.checked || own});
@@ -137,7 +131,7 @@ export class Files {
   async load(name: string) {
     const {plan, path, issues, about} = await this.request('building_load', {name});
     const isFolder = !/\.(sdf|world)$/.test(path);
-    this.about = {...blankAbout(), ...about, folder: isFolder ? parentOf(path) : ''};
+    this.about = {...NOT_SAVED, ...about, folder: isFolder ? parentOf(path) : ''};
     this.session.open(plan, isFolder ? {path, name: plan.name} : null);
     this.session.say(issues.length ? `Opened with a warning: ${issues[0].message}` : '');
   }
@@ -173,7 +167,7 @@ export class Files {
   /** An empty plan, after a question where something would be lost. */
   async fresh() {
     if (!await this.mayDiscard()) return false;
-    this.about = blankAbout();
+    this.about = NOT_SAVED;
     this.session.open(emptyPlan());
     return true;
   }

@@ -1,32 +1,14 @@
 /** Saving what was built as a model folder, and meshes that become links. */
 import {encoded} from '../dropped_files.js';
-import {RequestError} from '../connection.js';
-import {ask, Dialog, faultText, labelled} from '../ui/dialog.js';
+import {aboutFields, askToReplace, NO_AUTHOR} from '../saved_models.js';
+import {Dialog, labelled} from '../ui/dialog.js';
 import {h} from '../ui/dom.js';
-import type {BuildingAbout} from '../protocol.js';
 import type {RequestFunction} from '../connection.js';
-
-const blankAbout = (name: string) => ({name, version: '1.0', description: '', author: '', email: ''});
-
-/**
- * Asks again where there is something of that name.
- * @returns false: the user would rather not
- */
-async function replacing<T>(request: (overwrite: boolean) => Promise<T>): Promise<T|false> {
-  try {
-    return await request(false);
-  } catch (fault) {
-    if (!(fault instanceof RequestError) || fault.issues[0]?.code !== 'exists') throw fault;
-    const answer = await ask('Replace the model?', `${faultText(fault)}.`,
-      [{title: 'Cancel'}, {title: 'Replace', value: true, danger: true}]);
-    return answer ? request(true) : false;
-  }
-}
 
 /** What is saved, under which name. */
 export class ModelFiles {
   request;
-  #about: BuildingAbout & {name: string} = blankAbout('');
+  #about = {name: '', ...NO_AUTHOR};
   /** The name under which this session has saved. */
   saved = '';
 
@@ -41,22 +23,16 @@ export class ModelFiles {
 
   /** Asks for a name. */
   async saveAs(model: string): Promise<string|null> {
-    const about = this.#about.name ? this.#about : blankAbout(model);
-    const input = (value: string) => h('input', {type: 'text', value, spellcheck: 'false'});
-    const name = input(about.name);
-    const more = {version: input(about.version), description: input(about.description),
-      author: input(about.author), email: input(about.email)};
+    const name = h('input', {type: 'text', value: this.#about.name || model, spellcheck: 'false'});
+    const about = aboutFields(this.#about);
     const dialog = new Dialog({
       title: 'Save Model', name: 'model-save',
       content: [
         h('p', {text: 'The model becomes a folder in ~/.gazebo/models, and an entry of the Insert tab.'}),
-        labelled('Name', name),
-        h('details', {}, h('summary', {text: 'Advanced'}), labelled('Version', more.version),
-          labelled('Description', more.description), labelled('Author', more.author), labelled('E-mail', more.email)),
+        labelled('Name', name), about.element,
       ],
       buttons: [{title: 'Cancel'}, {title: 'Save', primary: true, run: async () => {
-        this.#about = {name: name.value.trim(), version: more.version.value, description: more.description.value,
-          author: more.author.value, email: more.email.value};
+        this.#about = {name: name.value.trim(), ...about.values()};
         return await this.#write(model, this.#about.name, false) ?? false;
       }}],
     });
@@ -66,7 +42,7 @@ export class ModelFiles {
 
   async #write(model: string, name: string, again: boolean) {
     const {name: _, ...about} = this.#about;
-    const reply = await replacing((overwrite) =>
+    const reply = await askToReplace((overwrite) =>
       this.request('save_model', {model, name, about, overwrite: overwrite || again}));
     if (!reply) return null;
     this.saved = name;
@@ -84,7 +60,7 @@ async function storedMesh(request: RequestFunction, files: File[]): Promise<stri
   if (!mesh) throw new Error('Choose a DAE, STL, OBJ or GLB file, with its textures where it has any.');
   const name = mesh.name.replace(/\.[^.]*$/, '').replace(/[^A-Za-z0-9_ .-]/g, '_').replace(/^[^A-Za-z0-9]+/, '') || 'mesh';
   const packed = await encoded(files.map((file) => ({path: file.name, file})));
-  const reply = await replacing((overwrite) => request('import_model', {name, files: packed, overwrite}));
+  const reply = await askToReplace((overwrite) => request('import_model', {name, files: packed, overwrite}));
   return reply ? `${reply.uri}/meshes/${mesh.name}` : null;
 }
 

@@ -1,7 +1,7 @@
 /** Files of the desktop that were dropped on the ground: asks what must be known, then inserts. */
 import {encoded, filesOf, kindOf, modelsOfWorld} from '../../dropped_files.js';
-import {RequestError} from '../../connection.js';
-import {ask, Dialog, faultText, labelled} from '../../ui/dialog.js';
+import {askToReplace} from '../../saved_models.js';
+import {Dialog, labelled} from '../../ui/dialog.js';
 import {h} from '../../ui/dom.js';
 import type {Dropped, DroppedFile} from '../../dropped_files.js';
 import type {Operation} from '../../protocol.js';
@@ -67,15 +67,7 @@ async function store({request}: Page, files: DroppedFile[],
       if (mesh && !(density.valueAsNumber > 0)) throw new Error('The density must be greater than 0.');
       const fields = {name: found.name, files: await encoded(files),
         ...(mesh ? {density: density.valueAsNumber} : {})};
-      try {
-        await request('import_model', fields);
-      } catch (fault) {
-        if (!(fault instanceof RequestError) || fault.issues[0]?.code !== 'exists') throw fault;
-        if (!await ask('Replace the model?', `${faultText(fault)}.`,
-          [{title: 'Cancel'}, {title: 'Replace', value: true, danger: true}])) return false;
-        await request('import_model', {...fields, overwrite: true});
-      }
-      return true;
+      return Boolean(await askToReplace((overwrite) => request('import_model', {...fields, overwrite})));
     }}],
   });
   return await dialog.open() === true;

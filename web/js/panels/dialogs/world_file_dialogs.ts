@@ -3,7 +3,7 @@
  *
  * The server answers `folders {path}` with {path, parent, roots, folders, files}.
  */
-import {RequestError} from '../../connection.js';
+import {hasIssue} from '../../connection.js';
 import {Dialog, ask, faultText, labelled} from '../../ui/dialog.js';
 import {fill, h, roving} from '../../ui/dom.js';
 import {bytesText} from '../../ui/text_format.js';
@@ -170,10 +170,6 @@ class FolderList {
   }
 }
 
-/** Whether a request was refused with an issue of a code. */
-const hasCode = (fault: unknown, code: string) =>
-  fault instanceof RequestError && fault.issues.some((issue) => issue.code === code);
-
 /** A file's path below a folder. */
 function joined(folder: string, name: string) {
   return `${folder.replace(/\/$/, '')}/${name}`;
@@ -339,7 +335,7 @@ async function saveTo(request: RequestFunction, wanted: {path: string, launched?
   try {
     return (await request('save', {...wanted, overwrite: false})).path;
   } catch (fault) {
-    if (!hasCode(fault, 'exists')) throw fault;
+    if (!hasIssue(fault, 'exists')) throw fault;
     said = fault instanceof Error ? fault.message : `${wanted.path} already exists`;
   }
   const overwrite = await ask('Overwrite the file?', `${said}.`, [
@@ -394,7 +390,7 @@ async function saveWorld(page: FileDialogPage) {
       return true;
     }
   } catch (fault) {
-    if (!hasCode(fault, 'path-needed')) throw fault;
+    if (!hasIssue(fault, 'path-needed')) throw fault;
   }
   return Boolean(await saveAsDialog(page));
 }
