@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import {test} from 'node:test';
-import {scoped, splitScoped} from '../../web/js/scoped_names.js';
+import {splitScoped} from '../../web/js/scoped_names.js';
 
 const {cases} = JSON.parse(readFileSync(new URL('../data/scoped_names.json', import.meta.url)));
 
@@ -10,7 +10,3 @@ for (const {says, models, name, split} of cases) {
     assert.deepEqual(splitScoped(name, (one) => models.includes(one)), split);
   });
 }
-
-test('names are joined by the separator', () => {
-  assert.equal(scoped('arm', 'hand', 'finger'), 'arm::hand::finger');
-});

@@ -2,7 +2,7 @@
 import {add, orientation, position} from './pose.js';
 import type {Pose7, Vec3} from './pose.js';
 
-export type Edge = 'min'|'center'|'max';
+type Edge = 'min'|'center'|'max';
 
 export interface AlignChoice {
   axis: 'x'|'y'|'z';

@@ -6,7 +6,7 @@ import type {CameraChoices} from './store.js';
 import type {View} from './camera_math.js';
 
 /** a camera to come back to */
-export type Bookmark = {name: string, view: View};
+type Bookmark = {name: string, view: View};
 
 export function cameraActions({store, note, view}: ActionParts) {
   const bookmarksKey = () => `bookmarks.${store.history.file || store.document?.name || ''}`;

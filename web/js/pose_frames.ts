@@ -6,7 +6,7 @@ import {
 export const LIVE = FRAME_KINDS.poses;
 const REPLAY = FRAME_KINDS.log;
 
-export interface Frame {
+interface Frame {
   /** LIVE, or REPLAY of a log */
   kind: number;
   /** of the document that the link ids belong to */

@@ -6,9 +6,6 @@
 /** Between the name of a model and that of what belongs to it. */
 const SCOPE = '::';
 
-/** The names joined by the separator, the outermost first. */
-export const scoped = (...names: string[]) => names.join(SCOPE);
-
 /**
  * The model that a name begins with, and the rest of the name within it. The longest name of an
  * existing model wins: links of nested models have scoped names of their own.

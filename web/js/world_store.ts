@@ -291,7 +291,7 @@ export class WorldStore extends Emitter<StoreEvents> {
 }
 
 /** The link that carries a model's frame: the one it names, else the first; undefined without links. */
-export function canonicalLink(model: Model): Link|undefined {
+function canonicalLink(model: Model): Link|undefined {
   return model.links.find((link) => link.name === model.canonical_link) ?? model.links[0];
 }
 

@@ -5,7 +5,7 @@ const LETTER = 0.56;
 const LINE = 1.25;
 const TRIES = 12;
 
-export interface Placed {
+interface Placed {
   /** middle, or the beginning where `start` is set */
   x: number;
   /** middle */

@@ -9,7 +9,7 @@ import {direction, distance, polar, tidy, tidyPoint} from './plane_geometry.js';
 import {outlineOf} from './rooms.js';
 import type {Floor, Level, Opening, Plan, Stairs, Wall} from '../protocol.js';
 
-export type Point = import('./plane_geometry.js').Point;
+type Point = import('./plane_geometry.js').Point;
 export type OpeningKind = 'windows'|'doors';
 export type Kind = 'walls'|'stairs'|'floors'|OpeningKind;
 export type Ref = {kind: Kind, id: number};

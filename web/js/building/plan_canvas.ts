@@ -17,9 +17,9 @@ import type {Session} from './drawing_session.js';
 const ORDER: readonly Kind[] = Object.freeze(['floors', 'stairs', 'walls', 'windows', 'doors']);
 
 /** A part of a drawn item: its class, its path data, its fill. */
-export type Look = [string, string, string?];
+type Look = [string, string, string?];
 /** What is drawn of an item, and from what. */
-export type Drawn = {element: SVGElement, item: AnyItem|null,
+type Drawn = {element: SVGElement, item: AnyItem|null,
     state: string|null, wall: Wall|null};
 /** What of the world stands on the plan. */
 type Footprint = {name: string, outline: Point[]};

@@ -3,7 +3,7 @@ import type {Plan} from '../protocol.js';
 
 const MOST = 200;
 
-export type Step = {plan: Plan, label: string};
+type Step = {plan: Plan, label: string};
 
 export class History {
   plan;

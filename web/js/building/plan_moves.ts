@@ -6,7 +6,7 @@ import type {Ref} from './plan.js';
 import type {Point} from './plane_geometry.js';
 
 /** The ends of a wall that move. */
-export type Ends = {start?: Point, end?: Point};
+type Ends = {start?: Point, end?: Point};
 
 const ENDS: readonly ('start'|'end')[] = Object.freeze(['start', 'end']);
 

@@ -10,11 +10,11 @@ type Corner = {point: Point, edges: Map<number, number>};
  * The rooms, the outer loop of each group of connected walls, and all corners. Outer loops are
  * clockwise and contain every corner on them.
  */
-export type Faces = {rooms: Room[], outer: Point[][], corners: Corner[]};
+type Faces = {rooms: Room[], outer: Point[][], corners: Corner[]};
 
 const known: WeakMap<Wall[], Faces> = new WeakMap();
 
-export interface Room {
+interface Room {
   /** middle lines of its walls, counter-clockwise */
   outline: Point[];
   /** the faces of its walls */

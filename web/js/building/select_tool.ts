@@ -14,7 +14,7 @@ import type {Point} from './plane_geometry.js';
 import type {Session} from './drawing_session.js';
 
 /** A drag of an item or one of its handles. */
-export type Drag = {ref: Ref, part: string, from: Point, plan: Plan, moved?: boolean};
+type Drag = {ref: Ref, part: string, from: Point, plan: Plan, moved?: boolean};
 
 const QUARTER = Math.PI / 2;
 

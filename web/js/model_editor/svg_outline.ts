@@ -1,7 +1,7 @@
 /** Outlines of an SVG drawing as polygons that SDF can extrude. */
 
 /** The most corners of a drawing: more make the collision slow. */
-export const MOST_CORNERS = 2000;
+const MOST_CORNERS = 2000;
 /** Points on each curve of a path. */
 const DIVISIONS = 12;
 

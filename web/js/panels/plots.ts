@@ -23,7 +23,7 @@ const SPANS: [string, number|null][] = [
 const SHOWN = 300;
 
 /** The samples of a variable that canvases show. */
-export type Kept = {series: Series, uses: number, off: () => void,
+type Kept = {series: Series, uses: number, off: () => void,
     problem?: string|null};
 
 export class Plots {

@@ -235,7 +235,7 @@ export function axisFields(joint: Joint) {
   ];
 }
 
-export const LIGHT_TYPES = ['point', 'spot', 'directional'];
+const LIGHT_TYPES = ['point', 'spot', 'directional'];
 
 /** The fields of a light: its type decides. */
 export function lightFields(light: Light) {

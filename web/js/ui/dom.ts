@@ -6,7 +6,7 @@
 export type Child = Node|string|number|null|undefined|false;
 
 /** Attributes of an element by name; `on…` are listeners. */
-export type Attributes = {[K in keyof HTMLElementEventMap as `on${K}`]?: ((event: HTMLElementEventMap[K]) => unknown)|null}
+type Attributes = {[K in keyof HTMLElementEventMap as `on${K}`]?: ((event: HTMLElementEventMap[K]) => unknown)|null}
     & Record<string, unknown>;
 
 /**

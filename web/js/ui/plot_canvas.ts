@@ -21,7 +21,7 @@ export type Curve = {series: Series, color: string};
 /** Where the curves are drawn, px. */
 type PlotBox = {left: number, top: number, width: number, height: number};
 /** What the axes show. */
-export type Range = {from: number, to: number, low: number, high: number};
+type Range = {from: number, to: number, low: number, high: number};
 export type Drawn = {box: PlotBox, range: Range};
 
 /** A color that no curve has; the first one if all are taken. */

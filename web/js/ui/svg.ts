@@ -1,5 +1,5 @@
 /** Making elements of SVG. */
-export type Attributes = Record<string, string|number|boolean|null|undefined>;
+type Attributes = Record<string, string|number|boolean|null|undefined>;
 
 const SVG = 'http://www.w3.org/2000/svg';
 

@@ -7,7 +7,7 @@ import {
 } from 'three';
 import {axisAngle, multiply} from '../pose.js';
 
-export type Joint = {name: string, parent: number, offset: number[], channels: string[]};
+type Joint = {name: string, parent: number, offset: number[], channels: string[]};
 
 const AXES = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 

@@ -13,7 +13,7 @@ import type {ViewParts} from './view.js';
 import type {OverlayFlag} from '../store.js';
 
 /** What Save Configuration has kept in this browser. */
-export type Configuration = View & {projection: 'perspective'|'orthographic', controller: 'orbit'|'fps',
+type Configuration = View & {projection: 'perspective'|'orthographic', controller: 'orbit'|'fps',
     overlays: Partial<Record<OverlayFlag, boolean>>};
 
 export const savedConfiguration = (): Configuration|null => remembered.get('configuration', null);

@@ -12,7 +12,7 @@ const LEVEL = Math.SQRT1_2;
 const CLEAR = 0.01;
 
 /** A place, and whether it is on level ground instead of in front of a wall. */
-export type Place = {point: Vec3, level: boolean};
+type Place = {point: Vec3, level: boolean};
 
 /**
  * How far a box must stay away from a wall.

@@ -11,7 +11,7 @@ import type {Pose7} from '../pose.js';
 import type {Stage} from './stage.js';
 import type {Store} from '../store.js';
 
-export type Lamp = DirectionalLight|PointLight|SpotLight;
+type Lamp = DirectionalLight|PointLight|SpotLight;
 /** A light of the world with its lamp and its icon in the view. */
 type LightEntry = {light: Light, lamp: Lamp, icon: Group};
 

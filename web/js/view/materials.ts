@@ -13,7 +13,7 @@ import type {Color, LoadingManager, Material, Texture} from 'three';
 type MaterialDocument = import('../protocol.js').Material;
 type Paint = Pick<MaterialDocument, 'texture'> & Partial<MaterialDocument>;
 type TextureDocument = import('../protocol.js').Texture;
-export type TerrainLayer = import('../protocol.js').TerrainLayer;
+type TerrainLayer = import('../protocol.js').TerrainLayer;
 type ThreeMaterial = Material;
 /**
  * How a surface is drawn; `pushed`: it lies just behind others; `endless`: its rim goes over into

@@ -22,7 +22,7 @@ type DrawnShape = {pose: Pose7, geometry: Geometry,
     transparency?: number, picture_size?: number|null};
 
 /** How a shape is drawn; `material`: in place of its own. */
-export type Look = Variant & {material?: Material};
+type Look = Variant & {material?: Material};
 
 /** A geometry of a shape before its material is chosen; `own`: the material of the mesh file. */
 type BasicPart = {geometry: BufferGeometry, matrix: Matrix4, pushed?: boolean,

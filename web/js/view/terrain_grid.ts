@@ -4,7 +4,7 @@
  */
 
 /** Corners in a triangle list, x y z each. */
-export type Corners = Float32Array;
+type Corners = Float32Array;
 
 /**
  * The grid behind a terrain's triangles: (a, b, d) of each cell row by row, then (a, d, c); a, b are

@@ -26,7 +26,7 @@ const JUMP = 1;
 const FRAME_SIZE = 0.15;
 
 /** A shape at a frame; the place of a frame that is still unknown is null. */
-export type Part = {group: Group, frame: string|null, place: FramePlace|null, life: Life|null};
+type Part = {group: Group, frame: string|null, place: FramePlace|null, life: Life|null};
 
 /** What is drawn of a topic. */
 class Mark {

@@ -7,7 +7,7 @@ import {keysOf, menus} from '../menu_items.js';
 import type {MenuItem} from '../../ui/popup.js';
 import type {Page} from '../panels.js';
 
-export type Command = {title: string, group: string, keys: string, run: () => unknown};
+type Command = {title: string, group: string, keys: string, run: () => unknown};
 
 /** The most that are listed. */
 const MOST = 12;

@@ -5,7 +5,7 @@ import {h} from '../../ui/dom.js';
 import type {Model, Requests, Template, TemplateParameter} from '../../protocol.js';
 import type {Page} from '../panels.js';
 
-export type Field = {parameter: TemplateParameter, input: HTMLInputElement};
+type Field = {parameter: TemplateParameter, input: HTMLInputElement};
 
 function fieldOf(parameter: TemplateParameter): Field {
   const {kind, title, unit, minimum, maximum} = parameter;

@@ -370,7 +370,7 @@ export async function openDialog({store, request}: FileDialogPage): Promise<stri
  * Asks what becomes of unsaved changes.
  * @returns whether to go on
  */
-export async function mayDiscard({store, request}: FileDialogPage): Promise<boolean> {
+async function mayDiscard({store, request}: FileDialogPage): Promise<boolean> {
   if (!store.history?.dirty) return true;
   const choice = await ask('Save changes?', 'The world has unsaved changes.', [
     {title: 'Cancel'},
