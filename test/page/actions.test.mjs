@@ -1,21 +1,11 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
-import {createActions} from '../../web/js/actions.js';
 import {RequestError} from '../../web/js/connection.js';
 import {HOTKEYS, hotkey, spelled} from '../../web/js/hotkeys.js';
-import {Store} from '../../web/js/store.js';
 import {requestFault} from './protocol.mjs';
-import {NotingConnection, world} from './scene.mjs';
+import {actionsPage} from './scene.mjs';
 
 const ORIGIN = [0, 0, 0, 0, 0, 0, 1];
-
-function page() {
-  const connection = new NotingConnection();
-  const store = new Store(connection);
-  const actions = createActions({store, connection});
-  store.receive({type: 'world', revision: 1, document: world()});
-  return {connection, store, actions};
-}
 
 /** Does everything that asks the simulator, once. */
 async function everything({actions, store, connection}) {
@@ -70,7 +60,7 @@ async function everything({actions, store, connection}) {
 }
 
 test('everything the page asks is in the protocol', async () => {
-  const parts = page();
+  const parts = actionsPage();
   await everything(parts);
   assert.ok(parts.connection.requests.length > 35);
   for (const [type, fields] of parts.connection.requests) {
@@ -87,13 +77,13 @@ test('the check of the protocol finds what is wrong', () => {
 });
 
 test('a link that is deleted takes its model along', async () => {
-  const {actions, connection} = page();
+  const {actions, connection} = actionsPage();
   await actions.remove(['a::link', 'a']);
   assert.deepEqual(connection.requests[0][1].op, {kind: 'delete', names: ['a']});
 });
 
 test('what is refused becomes an issue, and the action says so', async () => {
-  const {actions, connection, store} = page();
+  const {actions, connection, store} = actionsPage();
   const issue = {severity: 'error', code: 'taken', message: 'the name is taken'};
   connection.answers.edit = new RequestError([issue]);
   const outcome = await actions.rename('a', 'b');
@@ -102,7 +92,7 @@ test('what is refused becomes an issue, and the action says so', async () => {
 });
 
 test('nothing to undo is a note, and other refusals are errors', async () => {
-  const {actions, connection, store} = page();
+  const {actions, connection, store} = actionsPage();
   const refused = (message) => new RequestError([{severity: 'error', code: 'unusable', message}]);
   connection.answers.undo = refused('nothing to undo');
   assert.equal((await actions.undo()).ok, false);
@@ -116,7 +106,7 @@ test('nothing to undo is a note, and other refusals are errors', async () => {
 });
 
 test('saving asks for a name only when the world has none', async () => {
-  const {actions, connection, store} = page();
+  const {actions, connection, store} = actionsPage();
   const dialogs = [];
   store.addEventListener('dialog', ({detail}) => dialogs.push(detail.name));
   await actions.save();
@@ -127,14 +117,14 @@ test('saving asks for a name only when the world has none', async () => {
 });
 
 test('a new world is not made over unsaved changes', async () => {
-  const {actions, connection, store} = page();
+  const {actions, connection, store} = actionsPage();
   store.receive({type: 'history', undo: ['move [a]'], redo: [], dirty: true, file: ''});
   await actions.newWorld();
   assert.equal(connection.requests.length, 0);
 });
 
 test('what is placed is selected', async () => {
-  const {actions, connection, store} = page();
+  const {actions, connection, store} = actionsPage();
   connection.answers.edit = {name: 'b'};
   actions.insertShape('box');
   assert.equal(store.mode, 'insert');
@@ -144,7 +134,7 @@ test('what is placed is selected', async () => {
 });
 
 test('Esc undoes one thing at a time', () => {
-  const {actions, store} = page();
+  const {actions, store} = actionsPage();
   store.select(['a']);
   actions.translateMode();
   actions.insertShape('box');
@@ -158,7 +148,7 @@ test('Esc undoes one thing at a time', () => {
 });
 
 test('a followed model keeps its handles away', () => {
-  const {actions, store} = page();
+  const {actions, store} = actionsPage();
   actions.follow('a');
   actions.translateMode();
   assert.equal(store.mode, 'select');
@@ -167,7 +157,7 @@ test('a followed model keeps its handles away', () => {
 });
 
 test('every hotkey has an action, and no two are the same', () => {
-  const {actions} = page();
+  const {actions} = actionsPage();
   const seen = new Set();
   for (const {keys, action} of HOTKEYS.filter((row) => row.action)) {
     assert.equal(typeof actions[action], 'function', keys);

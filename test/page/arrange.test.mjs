@@ -1,22 +1,11 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
-import {createActions} from '../../web/js/actions.js';
 import {arrayOffsets, clearSpacing, distributeMoves} from '../../web/js/arrange.js';
 import {groupAround, groupsOf, withGroups} from '../../web/js/model_groups.js';
 import {commandsOf, matching} from '../../web/js/panels/dialogs/command_dialog.js';
-import {Store} from '../../web/js/store.js';
 import {near} from './near.mjs';
 import {requestFault} from './protocol.mjs';
-import {NotingConnection, world} from './scene.mjs';
-
-function page() {
-  const connection = new NotingConnection();
-  const store = new Store(connection);
-  const actions = createActions({store, connection});
-  store.receive({type: 'world', revision: 1, document: world()});
-  connection.answers.copy = {text: '<sdf/>'};
-  return {connection, store, actions};
-}
+import {actionsPage} from './scene.mjs';
 
 const box = (name, x, size) => ({name, pose: [x, 0, 0.5, 0, 0, 0, 1],
   min: [x - size / 2, -0.5, 0], max: [x + size / 2, 0.5, 1]});
@@ -45,7 +34,7 @@ test('distributed models have equal gaps between boxes of different sizes', () =
 });
 
 test('duplicating and arrays are one step, and what has come is selected', async () => {
-  const {connection, store, actions} = page();
+  const {connection, store, actions} = actionsPage({copy: {text: '<sdf/>'}});
   store.select(['lamp', 'a']);
   connection.answers.edit = {names: ['a_clone', 'lamp_clone']};
   await actions.duplicate();
@@ -66,7 +55,7 @@ test('duplicating and arrays are one step, and what has come is selected', async
 });
 
 test('links of the edited model are copied beside themselves; others are not', async () => {
-  const {connection, store, actions} = page();
+  const {connection, store, actions} = actionsPage({copy: {text: '<sdf/>'}});
   store.select(['a::link']);
   await actions.duplicate();
   assert.deepEqual(connection.requests, []);
@@ -82,7 +71,7 @@ test('links of the edited model are copied beside themselves; others are not', a
 });
 
 test('hidden and locked models are left out of what all means', () => {
-  const {store, actions} = page();
+  const {store, actions} = actionsPage({copy: {text: '<sdf/>'}});
   const names = store.document.models.map(({name}) => name);
   actions.selectAll();
   assert.deepEqual(store.selection, names);
@@ -101,7 +90,7 @@ test('hidden and locked models are left out of what all means', () => {
 });
 
 test('the command search knows menus, tools and keys, each once', () => {
-  const {store, actions} = page();
+  const {store, actions} = actionsPage({copy: {text: '<sdf/>'}});
   const theme = {get: () => 'auto', set: () => {}};
   const commands = commandsOf({store, actions, theme, topics: {sensing: false}, notices: {}});
   const titles = commands.map(({title}) => title);
@@ -118,7 +107,7 @@ test('the command search knows menus, tools and keys, each once', () => {
 });
 
 test('groups name their models, and a name stands for its group', () => {
-  const {store} = page();
+  const {store} = actionsPage({copy: {text: '<sdf/>'}});
   const models = [['a', 'shelf'], ['b', ''], ['c', 'shelf']].map(([name, group]) => ({...store.model('a'), name, group}));
   assert.deepEqual([...groupsOf(models)], [['shelf', ['a', 'c']]]);
   assert.deepEqual(withGroups(models, ['b', 'a', 'lamp']), ['b', 'a', 'c', 'lamp']);
@@ -126,7 +115,7 @@ test('groups name their models, and a name stands for its group', () => {
 });
 
 test('lights are members of groups, are hidden and locked with them', async () => {
-  const {connection, store, actions} = page();
+  const {connection, store, actions} = actionsPage({copy: {text: '<sdf/>'}});
   const [name] = store.document.lights.map((one) => one.name);
   store.select(['a', name]);
   await actions.groupSelection();
@@ -143,7 +132,7 @@ test('lights are members of groups, are hidden and locked with them', async () =
 });
 
 test('grouping asks for a new group, ungrouping for all models of the groups', async () => {
-  const {connection, store, actions} = page();
+  const {connection, store, actions} = actionsPage({copy: {text: '<sdf/>'}});
   store.select(['a']);
   await actions.groupSelection();
   assert.deepEqual(connection.requests, []);

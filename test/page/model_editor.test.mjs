@@ -1,6 +1,5 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
-import {createActions} from '../../web/js/actions.js';
 import {
   axesOf, axisOr, connection, isLinkOf, jointText, JOINT_TYPES, linkMoves, linkRemovals, pluginText,
   renamedModel, resizing, sizeOf, stepsSince,
@@ -10,16 +9,8 @@ import {BOX, schematicOf} from '../../web/js/model_editor/schematic_layout.js';
 import {pluginFor, PLUGIN_TITLES} from '../../web/js/model_editor/plugin_templates.js';
 import {SOLID_SHAPES, solidModel} from '../../web/js/model_editor/solids.js';
 import {scaledLoops} from '../../web/js/model_editor/svg_outline.js';
-import {Store} from '../../web/js/store.js';
 import {near} from './near.mjs';
-import {model, NotingConnection, world} from './scene.mjs';
-
-function begun() {
-  const connection = new NotingConnection();
-  const store = new Store(connection);
-  store.receive({type: 'world', revision: 1, document: world()});
-  return {connection, store, actions: createActions({store, connection})};
-}
+import {actionsPage, model, world} from './scene.mjs';
 
 const turned = [2, 1, 0, 0, 0, Math.SQRT1_2, Math.SQRT1_2];
 
@@ -72,7 +63,7 @@ test('ghosts of links stand on the ground', () => {
 });
 
 test('a shape of the tool bar becomes a link while a model is built', async () => {
-  const {connection, store, actions} = begun();
+  const {connection, store, actions} = actionsPage();
   connection.answers.edit = {name: 'untitled::link_0'};
   store.setModelEditing({name: null});
   actions.insertShape('box');
@@ -84,7 +75,7 @@ test('a shape of the tool bar becomes a link while a model is built', async () =
 });
 
 test('time stands still while a model is built', async () => {
-  const {connection, store, actions} = begun();
+  const {connection, store, actions} = actionsPage();
   store.setModelEditing({name: 'a'});
   await actions.togglePlay();
   assert.equal(connection.requests.length, 0);
@@ -92,7 +83,7 @@ test('time stands still while a model is built', async () => {
 });
 
 test('Delete takes the chosen link of the edited model, not the model', async () => {
-  const {connection, store, actions} = begun();
+  const {connection, store, actions} = actionsPage();
   store.setModelEditing({name: 'a'});
   store.select(['a::link']);
   await actions.remove();
@@ -101,7 +92,7 @@ test('Delete takes the chosen link of the edited model, not the model', async ()
 
 /** A model editor whose history has since got steps, the newest first; '' is the user's own. */
 function editorAfter(undoBy) {
-  const {connection, store, actions} = begun();
+  const {connection, store, actions} = actionsPage();
   const said = [];
   const editor = new ModelEditor({store, actions, request: null, notices: {say: (text) => said.push(text)}});
   store.receive({type: 'history', undo: undoBy.map(() => 'a step'), undo_by: undoBy, redo: [],
@@ -142,7 +133,7 @@ test('a model that got another name is known by its links, also where nobody sel
 
 /** A tool that connects links of a model of two, at its first question. */
 function connecting() {
-  const {connection, store, actions} = begun();
+  const {connection, store, actions} = actionsPage();
   const one = model('m', 7, turned);
   const two = {...one, links: ['l', 'k'].map((name, at) => ({...one.links[0], name, id: 7 + at}))};
   store.receive({type: 'world', revision: 2, document: {...world(), models: [two]}});

@@ -1,6 +1,8 @@
 /** A small world's document, and a connection that notes what is asked of it. */
+import {createActions} from '../../web/js/actions.js';
 import {Emitter} from '../../web/js/emitter.js';
 import {shapeModel, newLight} from '../../web/js/new_entities.js';
+import {Store} from '../../web/js/store.js';
 
 export function model(name, id, pose) {
   const made = shapeModel('box');
@@ -44,4 +46,14 @@ export class NotingConnection extends Emitter {
     if (answer instanceof Error) throw answer;
     return answer ?? {};
   }
+}
+
+/** The actions of a page on the small world, with answers of a connection by type of request. */
+export function actionsPage(answers = {}) {
+  const connection = new NotingConnection();
+  Object.assign(connection.answers, answers);
+  const store = new Store(connection);
+  const actions = createActions({store, connection});
+  store.receive({type: 'world', revision: 1, document: world()});
+  return {connection, store, actions};
 }

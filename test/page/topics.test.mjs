@@ -10,7 +10,7 @@ import {createActions} from '../../web/js/actions.js';
 import {Store} from '../../web/js/store.js';
 import {Watches} from '../../web/js/watches.js';
 import {near} from './near.mjs';
-import {frameOf, model, NotingConnection, world} from './scene.mjs';
+import {actionsPage, frameOf, model, NotingConnection, world} from './scene.mjs';
 
 const ORIGIN = [0, 0, 0, 0, 0, 0, 1];
 const at = (x, y = 0, z = 0) => [x, y, z, 0, 0, 0, 1];
@@ -193,10 +193,7 @@ test('opposite keys cancel, Shift is faster', () => {
 
 /** A page whose keyboard is the test. */
 function driver(selection = ['a']) {
-  const connection = new NotingConnection();
-  const store = new Store(connection);
-  const actions = createActions({store, connection});
-  store.receive({type: 'world', revision: 1, document: world()});
+  const {connection, store, actions} = actionsPage();
   const target = new EventTarget();
   store.select(selection);
   store.connected = true;
