@@ -24,6 +24,8 @@ interface JointRow {
   unit: string;
   /** what the simulator drives the joint with */
   drive?: Drive|null|undefined;
+  /** the drive before the last edit: a push of before it may arrive after the reply */
+  outdated?: Drive|null|undefined;
   show: (drive: Drive|null|undefined) => void;
   /** gains that suit the joint */
   suggest: (gains: Gains|undefined) => void;
@@ -48,6 +50,8 @@ export function drivenJoints(model: Model|null): DrivenJoint[] {
       return {joint, units: {force, position: length, velocity: `${length}/s`}};
     });
 }
+
+const equal = (one: unknown, other: unknown) => JSON.stringify(one) === JSON.stringify(other);
 
 export class JointsPanel {
   page;
@@ -195,8 +199,10 @@ export class JointsPanel {
       try {
         const outcome = await this.page.actions.edit(
           {kind: 'joint', joint: scoped, mode, value, ...sent}, {quiet: true});
-        if (outcome.ok) row.drive = {...row.drive, mode, value, ...sent};
-        else say(outcome.issues[0].message);
+        if (outcome.ok) {
+          row.outdated = row.drive ?? null;
+          row.drive = {...row.drive, mode, value, ...sent};
+        } else say(outcome.issues[0].message);
       } finally {
         underWay -= 1;
       }
@@ -273,7 +279,9 @@ export class JointsPanel {
       const at = (value: number) => numberText(Math.round((value / row.factor) * 1e4) / 1e4);
       row.present.textContent = `${at(position)} ${row.unit}, ${at(rate)} ${row.unit}/s`;
       row.suggest(suited?.[this.#mode]);
-      if (JSON.stringify(drive) !== JSON.stringify(row.drive)) row.show(drive);
+      const isOutdated = equal(drive ?? null, row.outdated);
+      row.outdated = undefined;  // one push only: then it is an edit of somebody else
+      if (!isOutdated && !equal(drive, row.drive)) row.show(drive);
     }
   }
 
