@@ -2,6 +2,8 @@
 from __future__ import annotations
 
 import math
+import os
+import signal
 
 import numpy as np
 import pytest
@@ -49,6 +51,27 @@ def test_a_camera_looks_at_a_point_and_rides_on_a_link(world):
     world.set_pose("cart", [2, -1.5, 0.5, 0, 0, math.pi / 2])
     ahead = world.render([0, 0, 0], frame="cart::base", width=33, height=33, outputs=("depth",))
     assert ahead.depth[16, 16] == pytest.approx(1.4, abs=1e-3)
+
+
+def test_a_requested_picture_shows_the_world_of_its_request(world):
+    before = world.render([0, 0, 0.5], outputs=("rgb", "labels"))
+    requested = world.request_picture([0, 0, 0.5], outputs=("rgb", "labels"))
+    world.remove("box")
+    world.step(10)
+    seen = requested.result()
+    assert (seen.rgb == before.rgb).all() and (seen.labels == before.labels).all()
+    assert seen.time == 0.0 and "box::link" in seen.names
+    assert requested.result().time == 0.0   # it can be read again
+    assert "box::link" not in world.render([0, 0, 0.5]).names
+
+
+def test_a_requested_picture_of_a_world_that_was_closed_is_refused():
+    with my_simulations.open_world() as world:
+        world.render([0, 0, 0.5])
+        os.kill(world._scene._processes[1].pid, signal.SIGSTOP)
+        requested = world.request_picture([0, 0, 1.5])
+    with pytest.raises(CommandError, match="no picture"):
+        requested.result()
 
 
 def test_the_same_world_gives_the_same_picture_after_a_reset(world):

@@ -3,13 +3,13 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import Any, Tuple
+from typing import Any, Optional, Tuple
 
 import gymnasium
 import numpy as np
 
 from ..geometry import Pose, rotate
-from ..python_api import OpenWorld, Readings
+from ..python_api import OpenWorld, PictureRequest, Readings
 from ..resources.package_files import own_directory
 
 AXES = ("turn", "lift", "elbow", "roll", "pitch", "hand_turn")
@@ -70,10 +70,13 @@ def observation_space(numbers: gymnasium.spaces.Box, camera: bool) -> "gymnasium
         "state": numbers, "camera": gymnasium.spaces.Box(0, 255, (PIXELS, PIXELS, 3), np.uint8)})
 
 
-def observation(world: OpenWorld, numbers: np.ndarray, camera: bool) -> Any:
-    """The numbers; with `camera` a dictionary of them and what the camera of the hand sees now."""
-    if not camera:
+def request_picture(world: OpenWorld) -> PictureRequest:
+    """Request a picture of the camera of the hand; it is drawn while the task computes."""
+    return world.request_picture(_CAMERA, frame="arm::hand", width=PIXELS, height=PIXELS, hfov=1.2)
+
+
+def observation(numbers: np.ndarray, picture: Optional[PictureRequest]) -> Any:
+    """The numbers; with a picture a dictionary of both."""
+    if picture is None:
         return numbers
-    rgb = world.render(_CAMERA, frame="arm::hand", width=PIXELS, height=PIXELS, hfov=1.2).rgb
-    assert rgb is not None, "rgb is the default output"
-    return {"state": numbers, "camera": rgb}
+    return {"state": numbers, "camera": picture.result().rgb}

@@ -95,6 +95,7 @@ class PickAndPlace:
         arm_scene.drive_fingers(world, grip > 0.0)
 
     def observe(self, world: OpenWorld) -> Any:
+        picture = arm_scene.request_picture(world) if self._camera else None
         links = world.links()
         scene = _Scene(arm_scene.read_arm(world, links), links.pose["cube::link"][:3],
                        links.twist["cube::link"], self._mark)
@@ -103,7 +104,7 @@ class PickAndPlace:
         numbers = clipped_observation(self._numbers, [
             *scene.arm.tool, *scene.arm.fingers, *scene.cube, *scene.mark,
             *(scene.cube - scene.arm.tool), *(scene.mark - scene.cube)])
-        return arm_scene.observation(world, numbers, self._camera)
+        return arm_scene.observation(numbers, picture)
 
     def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
         assert self._scene is not None, "observe is called before judge"

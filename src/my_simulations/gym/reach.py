@@ -62,12 +62,13 @@ class Reach:
         arm_scene.drive_axes(world, clipped_action(action) * arm_scene.FASTEST)
 
     def observe(self, world: OpenWorld) -> Any:
+        picture = arm_scene.request_picture(world) if self._camera else None
         arm = arm_scene.read_arm(world, world.links())
         left = math.dist(arm.tool, self._target)
         self._before, self._left = left if self._left is None else self._left, left
         numbers = clipped_observation(self._numbers,
                                       [*arm.positions, *arm.rates, *arm.tool, *self._target])
-        return arm_scene.observation(world, numbers, self._camera)
+        return arm_scene.observation(numbers, picture)
 
     def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
         left = math.inf if self._left is None else self._left

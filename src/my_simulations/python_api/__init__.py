@@ -6,8 +6,8 @@ from .readings import ContactReading, JointReadings, Readings, SavedState
 from .robot_joints import Robot
 from .robots import RobotOptions
 from .world_choice import WorldChoice
-from .world_pictures import Picture
+from .world_pictures import Picture, PictureRequest
 
-__all__ = ["ContactReading", "JointReadings", "OpenWorld", "Picture", "Randomisation",
-           "RayReading", "Readings", "Robot", "RobotOptions", "SavedState", "WorldChoice",
-           "open_world"]
+__all__ = ["ContactReading", "JointReadings", "OpenWorld", "Picture", "PictureRequest",
+           "Randomisation", "RayReading", "Readings", "Robot", "RobotOptions", "SavedState",
+           "WorldChoice", "open_world"]

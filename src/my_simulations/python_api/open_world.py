@@ -36,7 +36,7 @@ from .readings import (
 from .robots import Plugins, RobotOptions, Robots, classes_of
 from .world_changes import FilePath, WorldChanges
 from .world_choice import WorldChoice
-from .world_pictures import Photographer, Picture, camera_pose
+from .world_pictures import Photographer, Picture, PictureRequest, camera_pose
 
 if TYPE_CHECKING:
     import numpy as np
@@ -262,12 +262,24 @@ class OpenWorld(WorldChanges):
         Raises:
             CommandError: also if nothing is installed to draw with; it says what is missing.
         """
+        return self.request_picture(
+            pose, frame=frame, look_at=look_at, width=width, height=height, hfov=hfov, near=near,
+            far=far, outputs=outputs).result()
+
+    def request_picture(self, pose: Sequence[float], *, frame: str = "",
+                        look_at: Optional[Sequence[float]] = None, width: int = 320,
+                        height: int = 240, hfov: float = 1.047, near: float = 0.05,
+                        far: float = 100.0, outputs: Sequence[str] = ("rgb",)) -> PictureRequest:
+        """Request a picture of the world as it is now, and return while it is drawn.
+
+        Arguments are those of `render`; `result` of the request waits for the picture.
+        """
         self._running_simulator()
         at = pose_of(pose)
         if look_at is not None:
             at = camera_pose(at.position, vector_of(look_at, "look_at"))
         camera = CameraSpec(int(width), int(height), float(hfov), float(near), float(far))
-        return self._photographer.take(frame, at, camera, outputs)
+        return self._photographer.request(frame, at, camera, outputs)
 
     def contacts(self) -> List[ContactReading]:
         """The contact points of the last step."""

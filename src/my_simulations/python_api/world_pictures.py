@@ -2,13 +2,14 @@
 from __future__ import annotations
 
 import math
+from concurrent.futures import Future
 from concurrent.futures import TimeoutError as FutureTimeoutError
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, List, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Dict, List, Optional, Sequence, Tuple
 
 from ..errors import CommandError
 from ..geometry import Pose, Vec3, compose, norm, quat_from_rpy, subtract
-from ..sensing.api import DEPTH, LABELS, NO_ROW, RGB, CameraSpec, Mount, SensingError
+from ..sensing.api import DEPTH, LABELS, NO_ROW, RGB, CameraSpec, Mount, Pictures, SensingError
 from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
 
@@ -37,6 +38,31 @@ class Picture:
     depth: "Optional[np.ndarray]"
     labels: "Optional[np.ndarray]"
     names: Tuple[str, ...]
+
+
+class PictureRequest:
+    """A picture that is being drawn; see `OpenWorld.request_picture`.
+
+    Args:
+        future: of the sensing process.
+        ns: sim time of the picture.
+        links: scoped names by row, at that time.
+    """
+
+    def __init__(self, future: "Future[Pictures]", ns: int, links: Dict[int, str]) -> None:
+        self._future, self._ns, self._links = future, ns, links
+
+    def result(self) -> Picture:
+        """Wait for the picture. Raises CommandError if there is nothing to draw with."""
+        try:
+            found = self._future.result(_PATIENCE_S)
+        except SensingError as fault:
+            raise CommandError(f"no picture: {fault}") from fault
+        except FutureTimeoutError as fault:
+            raise CommandError(f"no picture within {_PATIENCE_S:g} s") from fault
+        labels = None if found.labels is None else _number_rows(found.labels, list(self._links))
+        return Picture(self._ns * 1e-9, found.rgb, found.depth, labels,
+                       tuple(self._links.values()))
 
 
 def camera_pose(position: Vec3, target: Vec3) -> Pose:
@@ -84,8 +110,9 @@ class Photographer:
         """End the process that draws."""
         self._scene.close()
 
-    def take(self, frame: str, pose: Pose, camera: CameraSpec, outputs: Sequence[str]) -> Picture:
-        """A picture as of now.
+    def request(self, frame: str, pose: Pose, camera: CameraSpec, outputs: Sequence[str],
+                ) -> PictureRequest:
+        """Request a picture as of now.
 
         Args:
             frame: model or link that carries the camera; "" for the world.
@@ -94,7 +121,7 @@ class Photographer:
             outputs: of `sensing.api`.
 
         Raises:
-            CommandError: no such frame, a camera that cannot be, or there is nothing to draw with.
+            CommandError: no such frame, or a camera that cannot be.
         """
         check_camera(camera, outputs)
         row, offset = self._simulator.states.frame_mount(frame)
@@ -102,15 +129,7 @@ class Photographer:
         ns = self._simulator.clock.sim_ns
         (future,) = self._scene.render([(mount, camera, tuple(outputs))], ns,
                                        self._simulator.feed.rows())
-        try:
-            found = future.result(_PATIENCE_S)
-        except SensingError as fault:
-            raise CommandError(f"no picture: {fault}") from fault
-        except FutureTimeoutError as fault:
-            raise CommandError(f"no picture within {_PATIENCE_S:g} s") from fault
-        names = self._simulator.states.link_names()
-        labels = None if found.labels is None else _number_rows(found.labels, list(names))
-        return Picture(ns * 1e-9, found.rgb, found.depth, labels, tuple(names.values()))
+        return PictureRequest(future, ns, self._simulator.states.link_names())
 
 
 def _number_rows(rows: "np.ndarray", links: "List[int]") -> "np.ndarray":
