@@ -72,11 +72,6 @@ class ProcessEngine:
         return self._ring
 
     @property
-    def ring_fd(self) -> int:
-        """File descriptor of the ring's memory, for other processes that read it."""
-        return self._ring_fd
-
-    @property
     def pid(self) -> int:
         return self._child.pid if self._child else 0
 

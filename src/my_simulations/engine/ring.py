@@ -147,12 +147,11 @@ def pose_and_twist(values: Sequence[float], at: int = 0) -> "tuple[Pose, Twist]"
 class Memory:
     """The mapping, as words and as doubles."""
 
-    def __init__(self, fd: Optional[int], read_only: bool = False) -> None:
+    def __init__(self, fd: Optional[int]) -> None:
         if fd is None:
             self._map = mmap.mmap(-1, SIZE)
         else:
-            access = mmap.ACCESS_READ if read_only else mmap.ACCESS_WRITE
-            self._map = mmap.mmap(fd, SIZE, access=access)
+            self._map = mmap.mmap(fd, SIZE, access=mmap.ACCESS_WRITE)
         view = memoryview(self._map)
         self.words = view.cast("q")
         self.doubles = view.cast("d")
