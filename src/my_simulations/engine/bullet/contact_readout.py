@@ -64,13 +64,16 @@ def _acting_friction(contacts: Sequence[ContactPoint], wheel_friction: WheelFric
     By place in `contacts`; each contact has what acts nearer to it than to the other ones of its
     links.
     """
+    acting = list(wheel_friction.acting())
+    if not acting:
+        return {}
     pairs: Dict[Tuple[LinkKey, LinkKey], List[int]] = {}
     for n, contact in enumerate(contacts):
         if contact[DISTANCE] < NEAR:
             pairs.setdefault(((contact[BODY], contact[LINK]),
                               (contact[OTHER_BODY], contact[OTHER_LINK])), []).append(n)
     found: Dict[int, Tuple[float, Vec3]] = {}
-    for key, friction in wheel_friction.acting():
+    for key, friction in acting:
         for pair, side, sign in (((key, friction.other), POINT, 1.0),
                                  ((friction.other, key), OTHER_POINT, -1.0)):
             places = pairs.get(pair, ())

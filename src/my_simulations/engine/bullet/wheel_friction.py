@@ -313,7 +313,7 @@ class WheelFriction(StepHelper):
         return not self._floors.issuperset([contact[OTHER_BODY] for contact in contacts])
 
     def _update_friction(self, key: LinkKey, moves: Motion, contacts: Contacts, loads: List[float],
-               step: int, dt: float, weight: float) -> None:
+                         step: int, dt: float, weight: float) -> None:
         """Compute the friction on a link from count `step` to its next computation."""
         slide, slips, steps = self._slides[key], key in self._slipping, self._next[key[0]] - step
         link = self._links[key]
