@@ -44,7 +44,7 @@ test('a push of before an edit that arrives after its reply does not undo it', a
   assert.deepEqual(edits.map(({gains}) => gains), [{p: 0, i: 1, d: 0}, {p: 0, i: 0, d: 0}]);
 });
 
-test('the drive of before that comes again is an edit of somebody else', async () => {
+test('a second push of the drive before an edit shows the edit of another user', async () => {
   const {push, p} = drivenHinge();
   push(OLD);
   typeInto(p, '0');

@@ -280,7 +280,7 @@ export class JointsPanel {
       row.present.textContent = `${at(position)} ${row.unit}, ${at(rate)} ${row.unit}/s`;
       row.suggest(suited?.[this.#mode]);
       const isOutdated = equal(drive ?? null, row.outdated);
-      row.outdated = undefined;  // one push only: then it is an edit of somebody else
+      row.outdated = undefined;  // a second such push shows the edit of another user
       if (!isOutdated && !equal(drive, row.drive)) row.show(drive);
     }
   }
