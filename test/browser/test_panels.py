@@ -698,15 +698,37 @@ def test_a_mesh_that_is_dropped_becomes_a_body_of_the_density_asked_for(editor):
     assert mass == approx(500 * 4 / 3 * math.pi * 0.25 ** 3, rel=0.01)
 
 
+def delay_next(editor, kind):
+    """Delays a request of the page of this kind until the script `goOn()`."""
+    editor.get(f"""(() => {{ const {{connection}} = editor, ask = connection.request;
+        connection.request = async (kind, ...rest) => {{
+          if (kind === {kind!r}) {{
+            connection.request = ask;
+            await new Promise((go) => {{ window.goOn = go; }});
+          }}
+          return ask.call(connection, kind, ...rest);
+        }}; }})()""")
+
+
+def test_what_is_dropped_while_an_import_goes_on_is_imported_too(editor):
+    block = trimesh.creation.box((1, 1, 1)).export(file_type="stl")
+    asked = editor.page.get_by_role("dialog", name="Import Mesh")
+    delay_next(editor, "library_get")
+    drop(editor, "first.stl", block, (-1.0, 0.0, 0.0))
+    asked.get_by_role("button", name="Import").click()
+    editor.until("Boolean(window.goOn)", "the import without its dialog")
+    drop(editor, "second.stl", block, (1.0, 0.0, 0.0))
+    asked.get_by_role("button", name="Import").click()
+    wait_for(lambda: "second" in editor.names(), "the second body")
+    editor.get("window.goOn()")
+    wait_for(lambda: "first" in editor.names(), "the first body")
+
+
 def test_an_import_that_takes_long_says_so_and_is_not_left_by_escape(editor):
     drop(editor, "slow.stl", trimesh.creation.box((1, 1, 1)).export(file_type="stl"),
          (-1.0, 0.0, 0.0))
     asked = editor.page.get_by_role("dialog", name="Import Mesh")
-    editor.get("""(() => { const {connection} = editor, ask = connection.request.bind(connection);
-        connection.request = async (kind, ...rest) => {
-          if (kind === 'import_model') await new Promise((go) => { window.goOn = go; });
-          return ask(kind, ...rest);
-        }; })()""")
+    delay_next(editor, "import_model")
     asked.get_by_role("button", name="Import").click()
     asked.get_by_role("alert").get_by_text("Working ...").wait_for()
     editor.page.keyboard.press("Escape")

@@ -108,8 +108,8 @@ export class Windows {
       previousRegion: () => goToRegion(-1),
     };
     const run = windows[detail.name];
-    if (!run || this.#open.has(detail.name)) return;
-    // A key that repeats must not stack the same window.
+    // A key that repeats must not stack the same window; what is dropped while an import goes on must not be lost.
+    if (!run || (this.#open.has(detail.name) && !detail.entries)) return;
     this.#open.add(detail.name);
     Promise.resolve(run())
       .catch((fault) => this.page.notices.fault(fault))
