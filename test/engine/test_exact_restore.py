@@ -135,6 +135,27 @@ def drive(world, n):
     world.drive_joint("robot::right_joint", 6.0 - 0.2 * (n % 3), 3.0)
 
 
+def test_a_robot_that_accelerates():
+    robot = ROBOT.replace("</model>", """
+        <plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+        <leftJoint>left_joint</leftJoint><rightJoint>right_joint</rightJoint>
+        <wheelSeparation>0.36</wheelSeparation><wheelDiameter>0.2</wheelDiameter>
+        <wheelAcceleration>0.3</wheelAcceleration><updateRate>30</updateRate></plugin></model>""")
+    with my_simulations.open_world() as world:
+        world.spawn(robot)
+        world.step(100)
+        world.publish("/robot/cmd_vel", {"linear": {"x": 0.6}, "angular": {"z": 0.5}})
+        world.step(447)
+        saved = world.save()
+        speed = world.states().twist["robot"][0]
+        first = record(world, 1000)
+        assert speed < 0.2 and world.states().twist["robot"][0] > 0.4
+        world.publish("/robot/cmd_vel", {"linear": {"x": -0.6}, "angular": {"z": 0.5}})
+        world.step(100)
+        world.restore(saved)
+        assert record(world, 1000) == first
+
+
 def test_attached_boxes(world):
     for n in range(3):
         world.spawn(BOX, f"box_{n}", [0.3 * n, 0, 0.5, 0.3, 0, 0])

@@ -47,6 +47,18 @@ def kobuki():
                      f"<{name}>{value}</{name}>" for name, value in names.items()))])
 
 
+def diff_drive(inside):
+    """Two driven wheels and a caster."""
+    body = base(mass=3.0, z=0.1)
+    body.collisions = [Collision("caster", Sphere(0.05), Pose((-0.15, 0.0, -0.05)),
+                                 surface=Surface(mu=0.0, mu2=0.0))]
+    return Model("robot", links=[body, wheel("l", 0.0, 0.17), wheel("r", 0.0, -0.17)],
+                 joints=[axle("left_joint", "l"), axle("right_joint", "r")],
+                 plugins=[plugin("libgazebo_ros_diff_drive.so", "<commandTopic>cmd_vel"
+                                 "</commandTopic><wheelSeparation>0.34</wheelSeparation>"
+                                 f"<wheelDiameter>0.2</wheelDiameter>{inside}")])
+
+
 def moved(library, inside, z=0.1):
     """A box of 0.2 m at a height of its centre, with a plugin."""
     return Model("box", links=[Link("link", Pose((0.0, 0.0, z)), Inertial(
@@ -70,7 +82,9 @@ def with_flap():
     return model
 
 
-ROBOTS = {"kobuki": (kobuki(), "mobile_base/commands/velocity"),
+ROBOTS = {"diff drive": (diff_drive("<wheelAcceleration>0.5</wheelAcceleration>"),
+                         "robot/cmd_vel"),
+          "kobuki": (kobuki(), "mobile_base/commands/velocity"),
           "tricycle": (tricycle("<steeringSpeed>1</steeringSpeed>"), "tricycle/cmd_vel"),
           "tricycle at once": (tricycle("<wheelAcceleration>2</wheelAcceleration>"),
                                "tricycle/cmd_vel"),
@@ -166,6 +180,14 @@ def test_the_engine_does_not_wait_for_a_drive_that_has_reached_its_command(drive
         one.drive(600)
         until(lambda: one.host._schedule.next_step is None or driven[0] in POLLS
               and one.host._schedule.next_step >= one.sim.clock.step + 100)
+
+
+def test_the_engine_does_not_wait_for_a_drive_that_accelerates():
+    with running("diff drive", heard=False) as one:
+        one.command(0.4, 0.0)
+        one.sim.clock.advance(400)
+        assert 0.15 < one.speed < 0.25
+        assert one.host._schedule.next_step is None
 
 
 @pytest.mark.parametrize("name", EXPIRES)

@@ -11,6 +11,26 @@ from .spline import Spline
 
 
 @dataclass(frozen=True)
+class RateRamp:
+    """How motors approach their rates; the engine changes these at the steps of a rate.
+
+    Source: `wheelAcceleration` of gazebo_plugins' differential drive (`motor_ramps`).
+
+    Attributes:
+        acceleration: rad/s^2 or m/s^2, greater than 0.
+        tolerance: rad/s or m/s; once one joint of the group is so near to its rate, all motors get
+            their rates.
+        hertz: of sim time; 0 or less is every step.
+        group: a name that the motors of one drive share, and no others.
+    """
+
+    acceleration: float
+    tolerance: float
+    hertz: float
+    group: str
+
+
+@dataclass(frozen=True)
 class JointMotor:
     """A motor that drives a joint axis to a rate with a limited effort (ODE's `vel` and `fmax`).
 
@@ -18,11 +38,13 @@ class JointMotor:
         row: joint row.
         rate: rad/s or m/s.
         effort: maximum effort, N m or N; 0 turns the motor off and restores the joint friction.
+        ramp: how it approaches the rate; None for at once.
     """
 
     row: int
     rate: float
     effort: float
+    ramp: Optional[RateRamp] = None
 
 
 @dataclass(frozen=True)

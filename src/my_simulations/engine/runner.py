@@ -36,6 +36,7 @@ from .commands import (
 )
 from .drive_commands import SetMotors
 from .host_sync import HostSync
+from .motor_ramps import MotorRamps
 from .readout_schedule import NOTHING, POSES, STATES, CommandRows, ReadoutSchedule
 from .ring import (
     CLOCK_SETS,
@@ -88,6 +89,7 @@ class Runner:
         self._horizon_written = -1
         self._clock_sets = self._words[CLOCK_SETS] + 1  # in a new engine it is another clock
         self._sync = HostSync(writer, backend, channel.notify)
+        self._ramps = MotorRamps(backend.read_axes, backend.apply)
         self._limit = NO_LIMIT
         # What the host was notified of: nothing before the clock is set, since the last states must
         # stay readable for a restart.
@@ -273,9 +275,16 @@ class Runner:
         if isinstance(command, SetClock):
             self._set_clock(command)
             return None
+        return self._apply_to_world(command)
+
+    def _apply_to_world(self, command: Command) -> object:
+        if isinstance(command, SetMotors):
+            self._ramps.set(command, self._step, self._clock)
+            return None
         if isinstance(command, AddTimedForces) and command.whole:
             command = AddTimedForces(tuple(force.begun(self._step) for force in command.forces))
         value = self._backend.apply(command)
+        self._ramps.note_applied(command)
         self._sync.note_applied(command, self._step)
         return value
 
@@ -320,6 +329,7 @@ class Runner:
         self._clock_sets += 1
         self._sync.change_settings(self._step)
         self._sync.records.set_clock(self._step, self._clock)
+        self._ramps.set_clock(self._step, self._clock)
 
     # -- stepping --------------------------------------------------------------------------------
 
@@ -358,12 +368,14 @@ class Runner:
         """Make steps and write the records that are due; returns how many there was room for."""
         self._sync.end_wait()
         self._words[STATUS] = STATUS_RUNNING
-        left, records = count, self._sync.records
+        left, records, ramps = count, self._sync.records, self._ramps
         while left > 0 and self._step < records.next_step:
-            row = min(left, records.next_step - self._step)
+            row = min(left, records.next_step - self._step, ramps.next_step - self._step)
             self._backend.step(self._step, row)
             self._step += row
             left -= row
+            if ramps.next_step <= self._step:
+                ramps.act(self._step, self._clock)
             if records.next_step <= self._step:
                 self._sync.record(self._step, self._clock_sets, self._clock)
         return count - left

@@ -17,7 +17,7 @@ from ..description.shapes import Material
 from ..description.surroundings import SphericalCoordinates
 from ..description.transmission import Transmission
 from ..engine.commands import JointWrench
-from ..engine.drive_commands import JointServo
+from ..engine.drive_commands import JointServo, RateRamp
 from ..engine.wrench_laws import WrenchLaw
 from ..errors import SimulationError
 from ..geometry import STILL, Pose, Twist, Vec3
@@ -77,8 +77,11 @@ class Joint(Protocol):
     def set_count(self) -> float:
         """The number of times the position was set directly; -1 outside of an observation."""
 
-    def drive(self, rate: float, effort: float) -> None:
-        """Drive the motor at `rate` with at most `effort`; an effort of 0 turns it off."""
+    def drive(self, rate: float, effort: float, ramp: Optional[RateRamp] = None) -> None:
+        """Drive the motor at `rate` with at most `effort`; an effort of 0 turns it off.
+
+        With a `ramp` the engine lets the motor approach the rate.
+        """
 
     @property
     def spec(self) -> JointSpec:

@@ -6,7 +6,7 @@ from typing import Dict, Optional, Tuple
 
 from ..description.model import Inertial
 from ..description.model import Joint as JointSpec
-from ..engine.drive_commands import JointMotor, JointServo, PlanarVelocity
+from ..engine.drive_commands import JointMotor, JointServo, PlanarVelocity, RateRamp
 from ..engine.wrench_laws import WrenchLaw
 from ..geometry import Pose, Twist, Vec3
 from .checked_arguments import check_finite, check_number
@@ -77,9 +77,9 @@ class SimulatedJoint:
         """The number of times the position was set directly."""
         return self._view.set_count(self.row)
 
-    def drive(self, rate: float, effort: float) -> None:
+    def drive(self, rate: float, effort: float, ramp: Optional[RateRamp] = None) -> None:
         self.motor = JointMotor(self.row, check_finite(rate, "the rate of a motor"),
-                                check_number(effort, "the effort of a motor"))
+                                check_number(effort, "the effort of a motor"), ramp)
         self._commands.motors[self.row] = self.motor
 
     def set_servo(self, servo: JointServo) -> None:
@@ -91,7 +91,7 @@ class SimulatedJoint:
         """Set the row of the axis, and send the motor or servo command for it again."""
         self.row = row
         if self.motor is not None:
-            self.drive(self.motor.rate, self.motor.effort)
+            self.drive(self.motor.rate, self.motor.effort, self.motor.ramp)
         if self.servo is not None:
             self.set_servo(self.servo)
 

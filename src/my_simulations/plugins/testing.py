@@ -19,7 +19,8 @@ from ..description.shapes import Material
 from ..description.surroundings import SphericalCoordinates
 from ..description.transmission import Transmission
 from ..engine.commands import JointWrench
-from ..engine.drive_commands import JointServo
+from ..engine.drive_commands import JointMotor, JointServo, RateRamp, SetMotors
+from ..engine.motor_ramps import MotorRamps
 from ..engine.rates import Rate
 from ..engine.ring import Clock
 from ..engine.servo_law import FOLLOW, ServoLaw
@@ -118,6 +119,7 @@ class FakeContext(FakeGraph):
         self.late = self.is_stepped_manually = False
         self.model_sensors: List[Tuple[str, Sensor]] = []
         self.labels: Dict[int, str] = {}
+        self._ramps = MotorRamps(self._read_axes, self._set_motors)
         self._calls: List[_Call] = []
         self._world_changes: List[_Call] = []
 
@@ -127,13 +129,33 @@ class FakeContext(FakeGraph):
         """Advance sim time: joints move, and the scheduled functions are called."""
         clock = Clock(0, 0, round(self.step_size * 1e12))
         for _ in range(round(seconds / self.step_size)):
+            self._set_pending_motors(clock)
             for joint in self.joints.values():
                 joint.step(self.step, self.step_size)
             self.step += 1
+            self._ramps.act(self.step, clock)
             for one in list(self._calls):
                 if one in self._calls and one.is_due(self.step, self.now_ns, clock):
                     one.call()
             self._compute_laws()
+
+    def _set_pending_motors(self, clock: Clock) -> None:
+        motors = []
+        for row, joint in enumerate(self.joints.values()):
+            if joint.pending_motor is not None:
+                motors.append(JointMotor(row, *joint.pending_motor))
+                joint.pending_motor = None
+        if motors:
+            self._ramps.set(SetMotors(tuple(motors)), self.step, clock)
+
+    def _set_motors(self, command: SetMotors) -> None:
+        joints = list(self.joints.values())
+        for motor in command.motors:
+            joints[motor.row].motor = motor.rate, motor.effort
+
+    def _read_axes(self, rows: Sequence[int]) -> List[float]:
+        joints = list(self.joints.values())
+        return [value for row in rows for value in (joints[row].position, joints[row].velocity)]
 
     def change_world(self) -> None:
         """Call the functions of `on_world_change`, after the test has changed something."""
@@ -319,7 +341,8 @@ class FakeJoint:
     """A joint that turns as its motor says, without delay; a servo's effort turns 1 kg m^2.
 
     Attributes:
-        motor: rate and effort that it was driven with; None before.
+        motor: rate and effort that it is driven with; None before.
+        pending_motor: rate, effort and ramp that the next step begins with; None for the same.
         servo: what it was steered with; None before.
         spec: its description.
         effort: what the servo spent in the last step.
@@ -331,6 +354,7 @@ class FakeJoint:
         self.name, self.parent, self.child = name, "base", name
         self.position = self.velocity = 0.0
         self.motor: Optional[Tuple[float, float]] = None
+        self.pending_motor: Optional[Tuple[float, float, Optional[RateRamp]]] = None
         self.servo: Optional[JointServo] = None
         self.spec = JointSpec(name, "revolute", "base", name, axis=JointAxis())
         self.effort = 0.0
@@ -345,8 +369,10 @@ class FakeJoint:
         if self.servo is not None and self.servo.holds:
             self.set_servo(self.servo)
 
-    def drive(self, rate: float, effort: float) -> None:
-        self.motor = (rate, effort)
+    def drive(self, rate: float, effort: float, ramp: Optional[RateRamp] = None) -> None:
+        if ramp is None:
+            self.motor = (rate, effort)
+        self.pending_motor = rate, effort, ramp
 
     def set_servo(self, servo: JointServo) -> None:
         servo = servo.held_at(self.position)

@@ -6,8 +6,7 @@ the positions of the wheels, so that it has no drift of its own; its forward vel
 """
 from __future__ import annotations
 
-from typing import Tuple
-
+from ...engine.drive_commands import RateRamp
 from .odometry import WheelCounter
 from .velocity_drive import OdometryDrive
 
@@ -19,7 +18,7 @@ class DiffDrive(OdometryDrive):
         context, p = self.enter_namespace(self.context.model)
         self._separation = p.positive("wheelSeparation", 0.34)
         self._radius = p.positive("wheelDiameter", 0.15) / 2.0
-        self._acceleration = p.number("wheelAcceleration", 0.0)
+        acceleration = p.number("wheelAcceleration", 0.0)
         self._torque = p.number("wheelTorque", 5.0)
         self._encoder = p.choice("odometrySource", {"encoder": True, "world": False}, False)
         self._publishes = p.flag("publishTf", True)
@@ -31,7 +30,11 @@ class DiffDrive(OdometryDrive):
         self._odometer = self.make_odometer(publishes=self._publishes)
         self.offer_wheels(self._joints)
         hertz = p.number("updateRate", 100.0)
-        self.follow_commands(hertz)
+        self._ramp = None if acceleration <= 0.0 else RateRamp(
+            acceleration / self._radius, _REACHED / self._radius, hertz,
+            f"{context.model} {self._joints[0].name}")
+        # The engine makes the steps of a ramp: it can begin at once.
+        self.follow_commands(hertz, at_once=self._ramp is not None)
         self.reset()
         # Encoders count at all updates, with and without subscribers.
         transforms = self._publishes and self._broadcasts or self._frames is not None
@@ -39,33 +42,11 @@ class DiffDrive(OdometryDrive):
             context.observe(hertz, self.publish, self.topics, transforms=transforms,
                             remembers=self._encoder and self._publishes)
 
+    def _drive(self) -> None:
+        for joint, speed in zip(self._joints, self._command.wheel_speeds(self._separation)):
+            joint.drive(speed / self._radius, self._torque, self._ramp)
+
     def reset(self) -> None:
-        self._instructed = [0.0, 0.0]
         super().reset()
-
-    def _follow(self, dt: float) -> bool:
-        """Approach the command; return whether the wheel speeds have reached it."""
-        speeds = self._speeds(dt)
-        self._drive(speeds)
-        return speeds == self._command.wheel_speeds(self._separation)
-
-    def _speeds(self, dt: float) -> Tuple[float, float]:
-        """Of the rims, m/s, within the acceleration."""
-        wanted = self._command.wheel_speeds(self._separation)
-        if self._acceleration <= 0.0:
-            return wanted
-        present = [joint.velocity * self._radius for joint in self._joints]
-        if any(abs(a - b) < _REACHED for a, b in zip(wanted, present)):
-            self._instructed = list(wanted)
-            return wanted
-        most = self._acceleration * dt
-        for n in (0, 1):
-            before = self._instructed[n]
-            after = before + max(-most, min(most, wanted[n] - present[n]))
-            # Clamp to the command, so that a blocked wheel causes no wind-up.
-            self._instructed[n] = min(max(after, min(before, wanted[n])), max(before, wanted[n]))
-        return self._instructed[0], self._instructed[1]
-
-    def _drive(self, speeds: Tuple[float, float] = (0.0, 0.0)) -> None:
-        for joint, speed in zip(self._joints, speeds):
-            joint.drive(speed / self._radius, self._torque)
+        for joint in self._joints:   # at once
+            joint.drive(0.0, self._torque)

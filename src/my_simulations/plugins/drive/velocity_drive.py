@@ -15,17 +15,19 @@ class VelocityDrive(Plugin):
     """Applies the last geometry_msgs/Twist at the steps of a rate, until it expires."""
 
     def follow_commands(self, hertz: float, topic: str = "",
-                        timeout: Optional[float] = None) -> None:
+                        timeout: Optional[float] = None, at_once: bool = False) -> None:
         """Subscribe to commands; `_follow` is called at a rate after each of them.
 
         Args:
             hertz: of sim time; 0 or less is every step.
             topic: of the commands; "" for that of `<commandTopic>`.
             timeout: s of sim time after which a command expires; None for never.
+            at_once: call `_drive` when a command comes, instead of `_follow` at the rate.
         """
         topic = topic or self.context.parameters.text("commandTopic", "cmd_vel")
         self._change = StepwiseChange(self.context, hertz, self._follow)
-        self._command = VelocityCommand(self.context, topic, timeout, self._change)
+        self._command = VelocityCommand(self.context, topic, timeout, self._change,
+                                        self._drive if at_once else self._change.begin)
 
     def make_odometer(self, covariance: Tuple[float, ...] = DRIVE_COVARIANCE,
                       twist_covariance: Tuple[float, ...] = NO_COVARIANCE,

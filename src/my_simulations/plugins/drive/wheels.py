@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, List, Optional, Sequence, Tuple
+from typing import Any, Callable, List, Optional, Sequence, Tuple
 
 from ...geometry import compose, inverse
 from ..call_slot import CallSlot
@@ -22,13 +22,15 @@ class VelocityCommand:
         yaw: rad/s.
     """
 
-    def __init__(self, context: Context, topic: str, timeout: Optional[float] = None,
-                 change: Optional[StepwiseChange] = None) -> None:
+    def __init__(self, context: Context, topic: str, timeout: Optional[float],
+                 change: StepwiseChange, received: Callable[[], None]) -> None:
         """`timeout`: s of sim time after which a command expires; None for never.
 
-        `change` begins with each command, and again at its first step after the timeout.
+        `change` begins at its first step after the timeout; `received` is called after each
+        command.
         """
         self._context, self._change = context, change
+        self._received = received
         self._time_out = TimeOut(context, timeout) if timeout is not None else None
         self._expiry = CallSlot()
         self.stop()
@@ -47,9 +49,8 @@ class VelocityCommand:
         self.x, self.y, self.yaw = message.linear.x, message.linear.y, message.angular.z
         if self._time_out is not None:
             self._time_out.begin()
-        if self._change is not None:
-            self._begin_expiry()
-            self._change.begin()
+        self._begin_expiry()
+        self._received()
 
     def wheel_speeds(self, separation: float) -> Tuple[float, float]:
         """Return the speeds of a left and a right wheel with a distance (m) between them, m/s."""
@@ -61,7 +62,7 @@ class VelocityCommand:
             self.stop()
 
     def _begin_expiry(self) -> None:
-        if self._time_out is not None and self._change is not None:
+        if self._time_out is not None:
             self._expiry.set(self._change.begin_after(self._time_out.end_ns))
 
 

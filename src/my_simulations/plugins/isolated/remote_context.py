@@ -62,9 +62,9 @@ class RemoteJoint(RemoteHandle):
         """The number of times the position was set directly."""
         return float(self._connection.state(self.number)[2])
 
-    def drive(self, rate: float, effort: float) -> None:
+    def drive(self, rate: float, effort: float, ramp: Any = None) -> None:
         self._call_handle("drive", check_finite(rate, "the rate of a motor"),
-                    check_number(effort, "the effort of a motor"))
+                          check_number(effort, "the effort of a motor"), ramp)
 
     def set_servo(self, servo: Any) -> None:
         """Drive the axis by a servo of the engine."""
