@@ -350,7 +350,7 @@ def test_unsaved_changes_are_asked_for_before_another_world_is_opened(editor, no
     editor.place("Box", (2.0, 1.0, 0.0))
     editor.page.keyboard.press("Control+o")
     question = editor.page.get_by_role("dialog", name="Save changes?")
-    question.get_by_role("button", name="Don't save").click()
+    question.get_by_role("button", name="Don't Save").click()
     dialog = in_dialog(editor, "Open World")
     dialog.get_by_role("option", name="one_box.world").dblclick()
     wait_for(lambda: editor.names() == ["ground_plane", "unit_box"], "the opened world")

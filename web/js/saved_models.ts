@@ -10,7 +10,7 @@ export const NO_AUTHOR: BuildingAbout = {version: '1.0', description: '', author
 
 /** Fields for what `model.config` says of a model, under "Advanced". */
 export function aboutFields(about: BuildingAbout) {
-  const inputs = FIELDS.map(([key]) => h('input', {type: 'text', value: about[key], spellcheck: 'false'}));
+  const inputs = FIELDS.map(([key]) => h('input', {value: about[key]}));
   return {
     element: h('details', {}, h('summary', {text: 'Advanced'}), ...FIELDS.map(([, label], at) => labelled(label, inputs[at]))),
     values: () => Object.fromEntries(FIELDS.map(([key], at) => [key, inputs[at].value])) as BuildingAbout,

@@ -57,7 +57,7 @@ export async function mount(element: HTMLElement, {store, request, actions}: {st
   const palette = h('div', {class: 'building-palette'});
   const levels = h('div', {class: 'building-levels', role: 'toolbar', 'aria-label': 'Levels'});
   const menu = h('nav', {class: 'building-menu', 'aria-label': 'Building menu'});
-  const done = h('button', {type: 'button', class: 'primary', text: 'Done', onclick: () => leave(),
+  const done = h('button', {class: 'primary', text: 'Done', onclick: () => leave(),
     title: 'Put the building into the world and leave the building editor (Ctrl+X)'});
   sheet.append(hint, faults, scale);
   fill(element, h('div', {class: 'building-editor'}, h('div', {class: 'building-head'}, menu, levels, done),

@@ -1,5 +1,5 @@
 /** Saving, opening and leaving: the windows that ask, and the requests behind them. */
-import {Dialog, ask, faultText, labelled} from '../ui/dialog.js';
+import {Dialog, ask, faultText, labelled, mayDiscard} from '../ui/dialog.js';
 import {h} from '../ui/dom.js';
 import {aboutFields, NO_AUTHOR} from '../saved_models.js';
 import {emptyPlan} from './plan.js';
@@ -58,7 +58,7 @@ export class Files {
   /** @returns whether it was saved */
   async saveAs(): Promise<boolean> {
     const {session, about} = this;
-    const text = (value: string, more = {}) => h('input', {type: 'text', value, ...more});
+    const text = (value: string, more = {}) => h('input', {value, ...more});
     const name = text(session.plan.name, {placeholder: 'Untitled', autofocus: true});
     const folder = text(about.folder, {placeholder: '~/building_editor_models'});
     const more = aboutFields(about);
@@ -109,10 +109,10 @@ export class Files {
   async open() {
     if (!await this.mayDiscard()) return false;
     const buildings = await this.request('building_list', {});
-    const path = h('input', {type: 'text', placeholder: 'folder or .sdf file'});
+    const path = h('input', {placeholder: 'folder or .sdf file'});
     const list = h('div', {class: 'building-list', ...(buildings.length ? {role: 'listbox', 'aria-label': 'Buildings'} : {})},
       ...buildings.map(({name, path: where}) => h('button', {
-        type: 'button', role: 'option', class: 'wide', title: where, text: name,
+        role: 'option', class: 'wide', title: where, text: name,
         onclick: () => { path.value = where; },
         ondblclick: () => { path.value = where; dialog.submit(); },
       })));
@@ -175,11 +175,8 @@ export class Files {
   /** Asks what becomes of changes: true when the plan may go. */
   async mayDiscard(): Promise<boolean> {
     if (!this.session.dirty) return true;
-    const answer = await ask('Save building?', 'The building has unsaved changes.',
-      [{title: 'Cancel'}, {title: "Don't Save", value: 'drop', danger: true},
-        {title: 'Save', value: 'save', primary: true}]);
     // Asks again for what was drawn while it was saved.
-    return answer === 'drop' || (answer === 'save' && await this.save() && this.mayDiscard());
+    return mayDiscard('Save building?', 'The building has unsaved changes.', async () => await this.save() && this.mayDiscard());
   }
 
   /** Asks before leaving. */

@@ -116,7 +116,7 @@ const INPUTS: Record<InspectorField['type'], (field: InspectorField) => FieldInp
   number: (field: InspectorField) => numeric(field),
   integer: (field: InspectorField) => numeric(field),
   text(field: InspectorField) {
-    const element = h('input', {type: 'text', 'aria-label': field.label, maxlength: 100});
+    const element = h('input', {'aria-label': field.label, maxlength: 100});
     return {element, put: (value) => { element.value = String(value ?? ''); }, get: () => element.value};
   },
   choice(field: InspectorField) {
@@ -126,7 +126,7 @@ const INPUTS: Record<InspectorField['type'], (field: InspectorField) => FieldInp
   },
   color(field: InspectorField) {
     const picker = h('input', {type: 'color', 'aria-label': field.label});
-    const swatches = SWATCHES.map((color) => h('button', {type: 'button', class: 'swatch', title: color,
+    const swatches = SWATCHES.map((color) => h('button', {class: 'swatch', title: color,
       style: `background: ${color}`, onclick: () => { picker.value = color; }}));
     return {element: h('span', {class: 'row'}, picker, ...swatches),
       put: (value) => { picker.value = String(value ?? ''); }, get: () => picker.value};

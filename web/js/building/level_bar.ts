@@ -1,5 +1,5 @@
 /** The bar above the sheet: levels, what is shown, zoom. */
-import {fill, h} from '../ui/dom.js';
+import {fill, h, textButton} from '../ui/dom.js';
 import {inspectLevel} from './inspector.js';
 import {addLevel, bases, removeLevel} from './plan.js';
 import type {Session} from './drawing_session.js';
@@ -31,8 +31,7 @@ export function mountLevels(element: HTMLElement, {session,
     canvas}: {session: Session,
     canvas: Canvas}) {
   const choice = h('select', {'aria-label': 'Level', onchange: () => { session.showLevel(Number(choice.value)); }});
-  const button = (text: string, title: string, run: () => void) => h('button',
-      {type: 'button', title, 'aria-label': title, onclick: run, text});
+  const button = (text: string, title: string, run: () => void) => textButton(text, run, {title, 'aria-label': title});
   const check = (what: keyof Session['shown'], text: string) => {
     const box = h('input', {type: 'checkbox', checked: true, onchange: () => { session.show(what, box.checked); }});
     return {what, box, label: h('label', {title: text}, box, text)};

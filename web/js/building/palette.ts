@@ -33,7 +33,7 @@ export function mountPalette(element: HTMLElement, {session, importPlan, draw}: 
   const buttons: [string, HTMLElement][] = [];
   const toggle = (id: string, attributes: Record<string, unknown>, make: () => Tool,
       ...content: (Node|string)[]) => {
-    const button = h('button', {type: 'button', 'aria-pressed': 'false', ...attributes,
+    const button = h('button', {'aria-pressed': 'false', ...attributes,
       onclick: () => {
         if (button.getAttribute('aria-pressed') === 'true') session.endTool();
         else {
@@ -48,7 +48,7 @@ export function mountPalette(element: HTMLElement, {session, importPlan, draw}: 
   };
   let active = '';
 
-  const name = h('input', {type: 'text', placeholder: 'Untitled', 'aria-label': 'Model Name', maxlength: 100,
+  const name = h('input', {placeholder: 'Untitled', 'aria-label': 'Model Name', maxlength: 100,
     onchange: () => {
       const text = name.value.trim() || 'Untitled';
       if (text !== session.history.plan.name) session.commit({...session.history.plan, name: text}, 'rename building');
@@ -60,7 +60,7 @@ export function mountPalette(element: HTMLElement, {session, importPlan, draw}: 
       update();
     }});
   const act = (id: string, title: string, glyphName: keyof typeof GLYPHS, run: () => void) =>
-    h('button', {type: 'button', dataset: {act: id}, onclick: run}, glyph(glyphName), title);
+    h('button', {dataset: {act: id}, onclick: run}, glyph(glyphName), title);
   fill(element,
     h('label', {class: 'building-name'}, h('span', {text: 'Model Name'}), name),
     ...tools.flatMap(([title, entries]) => [h('h2', {text: title}), h('div', {class: 'tools'},

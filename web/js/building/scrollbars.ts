@@ -1,5 +1,5 @@
 /** Scroll bars for a sheet without end: they span what is drawn and what is seen. */
-import {h} from '../ui/dom.js';
+import {followPointer, h} from '../ui/dom.js';
 import {extentOf} from './plan_canvas.js';
 import {SCALE} from './plan_svg.js';
 import type {Canvas} from './plan_canvas.js';
@@ -21,16 +21,13 @@ export function mountScrollbars(element: HTMLElement, {session,
   for (const bar of bars) {
     bar.thumb.addEventListener('pointerdown', (event) => {
       event.preventDefault();
-      bar.thumb.setPointerCapture(event.pointerId);
       let last = [event.clientX, event.clientY];
-      const move = (moved: PointerEvent) => {
+      followPointer(bar.thumb, event, (moved) => {
         const by = bar.way === 'across' ? moved.clientX - last[0] : moved.clientY - last[1];
         last = [moved.clientX, moved.clientY];
         const whole = -by / bar.size;
         canvas.pan(bar.way === 'across' ? whole : 0, bar.way === 'down' ? whole : 0);
-      };
-      bar.thumb.onpointermove = move;
-      bar.thumb.onpointerup = () => { bar.thumb.onpointermove = null; };
+      });
     });
   }
   return () => {

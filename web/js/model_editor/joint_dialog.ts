@@ -40,7 +40,7 @@ function axisRows(title: string, joint: Joint, axis: Axis, refuse: (text: string
 export async function jointDialog(model: Model, joint: Joint, {apply,
     remove}: {apply: (values: Partial<Joint>) => Promise<unknown>, remove: () => Promise<unknown>}) {
   const links = model.links.map((link) => link.name);
-  const name = h('input', {type: 'text', value: joint.name, spellcheck: 'false', 'aria-label': 'Name'});
+  const name = h('input', {value: joint.name, 'aria-label': 'Name'});
   const type = choice('Type', JOINT_TYPES, joint.type);
   const parent = choice('Parent', ['world', ...links], joint.parent);
   const child = choice('Child', links, joint.child);

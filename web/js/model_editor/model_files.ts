@@ -23,7 +23,7 @@ export class ModelFiles {
 
   /** Asks for a name. */
   async saveAs(model: string): Promise<string|null> {
-    const name = h('input', {type: 'text', value: this.#about.name || model, spellcheck: 'false'});
+    const name = h('input', {value: this.#about.name || model});
     const about = aboutFields(this.#about);
     const dialog = new Dialog({
       title: 'Save Model', name: 'model-save',
@@ -71,7 +71,7 @@ async function storedMesh(request: RequestFunction, files: File[]): Promise<stri
 export function meshDialog(request: RequestFunction, use: (uri: string) => Promise<unknown>) {
   const file = h('input', {type: 'file', multiple: true, accept: '.dae,.stl,.obj,.glb,.mtl,.png,.jpg,.jpeg',
     'aria-label': 'Mesh files'});
-  const uri = h('input', {type: 'text', placeholder: 'model://NAME/meshes/FILE', spellcheck: 'false',
+  const uri = h('input', {placeholder: 'model://NAME/meshes/FILE',
     'aria-label': 'Mesh URI'});
   return new Dialog({
     title: 'Add Mesh', name: 'model-mesh',

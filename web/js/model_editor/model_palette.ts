@@ -1,7 +1,7 @@
 /** The palette of the model editor: what can be added, and what the model has. */
-import {addPanel, Dialog, faultText, labelled} from '../ui/dialog.js';
-import {fill, h} from '../ui/dom.js';
-import {icon} from '../ui/icons.js';
+import {addPanel, askText, Dialog, labelled} from '../ui/dialog.js';
+import {fill, h, textButton as button} from '../ui/dom.js';
+import {closeButton} from '../ui/icons.js';
 import {jointDialog} from './joint_dialog.js';
 import {isLinkOf, JOINT_TYPES, jointText, pluginText, resizing, sizeOf} from '../model_edits.js';
 import {meshDialog} from './model_files.js';
@@ -14,9 +14,6 @@ import type {ModelEditor} from './model_editor.js';
 
 const capital = (text: string) => text[0].toUpperCase() + text.slice(1);
 
-const button = (text: string, run: () => unknown, more: Record<string, unknown> = {}) => h('button',
-    {type: 'button', text, onclick: run, ...more});
-
 export class Palette {
   editor;
   schematic;
@@ -27,8 +24,8 @@ export class Palette {
     this.#type = h('select', {'aria-label': 'Joint type', onchange: () => { editor.connect.type = this.#type.value; }},
       ...JOINT_TYPES.map((type) => h('option', {value: type, text: capital(type)})));
     this.#connect = button('Connect', () => editor.connect.toggle(), {title: 'Click the parent link, then the child link'});
-    const header = h('header', {title: 'Drag to move'}, h('h2', {text: 'Model Editor'}), h('button', {type: 'button', class: 'plain',
-      'aria-label': 'Exit model editor', title: 'Exit (Ctrl+M)', onclick: () => editor.close()}, icon('close')));
+    const header = h('header', {title: 'Drag to move'}, h('h2', {text: 'Model Editor'}),
+      closeButton('Exit model editor (Ctrl+M)', () => editor.close(), 18));
     this.#element = h('section', {class: 'model-palette', 'aria-label': 'Model editor'},
       header,
       this.#start,
@@ -54,7 +51,7 @@ export class Palette {
 
   #flags: {path: 'static'|'allow_auto_disable', input: HTMLInputElement}[] = [];
   #element;
-  #name = h('input', {type: 'text', 'aria-label': 'Model name', spellcheck: 'false',
+  #name = h('input', {'aria-label': 'Model name',
     onchange: () => this.#rename()});
   #type;
   #connect;
@@ -169,16 +166,11 @@ export class Palette {
       this.editor.notices.say('Add a link first; models are nested in it from the Insert tab, or here.');
       return;
     }
-    const uri = h('input', {type: 'text', value: 'model://', spellcheck: 'false', 'aria-label': 'Model URI'});
-    return new Dialog({
-      title: 'Nest Model', content: [labelled('URI', uri),
-        h('p', {class: 'soft', text: 'It then follows the mouse. Models of the Insert tab are nested, too, while the model editor is open.'})],
-      buttons: [{title: 'Cancel'}, {title: 'Nest', primary: true, run: async () => {
-        const outcome = await this.editor.actions.insertModel(uri.value.trim());
-        if (!outcome.ok) throw new Error(faultText(new Error(outcome.issues[0]?.message)));
-        return true;
-      }}],
-    }).open();
+    return askText('Nest Model', {label: 'URI', value: 'model://',
+      note: 'It then follows the mouse. Models of the Insert tab are nested, too, while the model editor is open.'}, 'Nest', async (uri) => {
+      const outcome = await this.editor.actions.insertModel(uri);
+      if (!outcome.ok) throw new Error(outcome.issues[0]?.message);
+    });
   }
 
   #editJoint(model: Model, joint: Joint) {
@@ -190,13 +182,10 @@ export class Palette {
   }
 
   #renameLink(link: string, name: string) {
-    const to = h('input', {type: 'text', value: name, spellcheck: 'false'});
-    return new Dialog({title: `Rename ${link}`, content: [labelled('Name', to)], buttons: [{title: 'Cancel'},
-      {title: 'Rename', primary: true, run: async () => {
-        const reply = await this.editor.request('edit', {op: {kind: 'rename_link', link, to: to.value}});
-        if (reply.name) this.editor.store.select([reply.name]);
-        return true;
-      }}]}).open();
+    return askText(`Rename ${link}`, {label: 'Name', value: name}, 'Rename', async (to) => {
+      const reply = await this.editor.request('edit', {op: {kind: 'rename_link', link, to}});
+      if (reply.name) this.editor.store.select([reply.name]);
+    });
   }
 
   /** One size for the collision, the visual and the inertia of a link. */
@@ -249,7 +238,7 @@ export class Palette {
   #plugins() {
     const {model} = this;
     if (!model) return;
-    const text = h('textarea', {class: 'plugin-text', spellcheck: 'false', 'aria-label': 'Plugins', rows: 14});
+    const text = h('textarea', {class: 'plugin-text', 'aria-label': 'Plugins', rows: 14});
     text.value = pluginText(model);
     const add = h('select', {'aria-label': 'Add', onchange: () => {
       text.value = [text.value.trim(), pluginFor(add.value, model, text.value)].filter(Boolean).join('\n');

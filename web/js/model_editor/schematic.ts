@@ -2,7 +2,7 @@
 import {svg} from '../ui/svg.js';
 import {addPanel} from '../ui/dialog.js';
 import {fill, h, onActivate} from '../ui/dom.js';
-import {icon} from '../ui/icons.js';
+import {closeButton} from '../ui/icons.js';
 import {BOX, schematicOf} from './schematic_layout.js';
 import type {Joint} from '../protocol.js';
 import type {ModelEditor} from './model_editor.js';
@@ -17,8 +17,8 @@ export class Schematic {
   constructor(view: HTMLElement, editor: ModelEditor, edit: (joint: Joint) => unknown) {
     this.#editor = editor;
     this.#edit = edit;
-    const header = h('header', {title: 'Drag to move'}, h('h2', {text: 'Schematic'}), h('button', {type: 'button',
-      class: 'plain', 'aria-label': 'Close schematic', onclick: () => this.toggle()}, icon('close')));
+    const header = h('header', {title: 'Drag to move'}, h('h2', {text: 'Schematic'}),
+      closeButton('Close schematic', () => this.toggle(), 18));
     this.#element = h('section', {class: 'model-schematic', 'aria-label': 'Schematic', hidden: true}, header, this.#sheet);
     addPanel(view, this.#element, header);
   }

@@ -62,8 +62,6 @@ const TABLE: Record<string, Field[]> = {
 };
 
 /** What a shape may be turned into by choosing another type: those that need no file. */
-const SIMPLE = ['box', 'sphere', 'cylinder', 'capsule', 'cone', 'ellipsoid'];
-
 const UNIT: Record<string, object> = {
   box: {size: [1, 1, 1]},
   sphere: {radius: 0.5},
@@ -73,18 +71,21 @@ const UNIT: Record<string, object> = {
   ellipsoid: {radii: [0.5, 0.5, 0.5]},
 };
 
+/** Whether numbers alone define the shape. */
+export const isSimple = (type: string) => type in UNIT;
+
 /** A simple shape of unit size. */
 export function unitGeometry(type: string) {
   return {type, ...UNIT[type]};
 }
 
 export function geometryFields(geometry: {type: string}): Field[] {
-  const simple = SIMPLE.includes(geometry.type);
+  const simple = isSimple(geometry.type);
   const type: Field = {
     path: 'geometry.type',
     label: 'geometry',
     type: simple ? 'choice' : 'text',
-    choices: SIMPLE,
+    choices: Object.keys(UNIT),
     fixed: !simple,
   };
   return [type, ...(TABLE[geometry.type] ?? [])];

@@ -1,6 +1,6 @@
 /** One line over the view that names the keys and the mouse of the tool in use, until it is closed. */
 import {fill, h, remembered} from '../ui/dom.js';
-import {icon} from '../ui/icons.js';
+import {closeButton} from '../ui/icons.js';
 import {modelOfSelection} from '../selected_model.js';
 import type {Model} from '../protocol.js';
 import type {Mode, Store} from '../store.js';
@@ -53,11 +53,10 @@ export function mountHints(element: HTMLElement, store: Store) {
   const touch = matchMedia('(pointer: coarse)').matches;
   const hints = h('div', {class: 'hints'});
   const line = h('div', {class: 'hint-line', role: 'note', 'aria-label': 'Hints'}, hints,
-    h('button', {type: 'button', class: 'plain', 'aria-label': 'Close the hints', title: 'Close the hints',
-      onclick: () => {
-        remembered.set('hints-closed', true);
-        line.remove();
-      }}, icon('close')));
+    closeButton('Close the hints', () => {
+      remembered.set('hints-closed', true);
+      line.remove();
+    }, 18));
   let shown = '';
   const show = () => {
     const {paused} = store.stats;

@@ -2,10 +2,10 @@
  * The Insert tab: simple shapes, then the model database by location, each model with its picture.
  * A click takes the model in hand: it then follows the mouse over the view until it is placed.
  */
-import {Dialog, labelled} from '../ui/dialog.js';
+import {askText} from '../ui/dialog.js';
 import {elementsOf, fill, h, onActivate, remembered} from '../ui/dom.js';
 import {bytesText} from '../ui/text_format.js';
-import {icon} from '../ui/icons.js';
+import {closeButton, icon} from '../ui/icons.js';
 import {TemplateCards} from './template_cards.js';
 import type {LibraryModel, Location, Pushes} from '../protocol.js';
 import type {Page} from './panels.js';
@@ -34,16 +34,7 @@ export class InsertTab {
         'div',
         {class: 'filter'},
         this.#search,
-        h(
-          'button',
-          {
-            type: 'button',
-            title: 'Add model path',
-            onclick: () => this.#addPath(),
-          },
-          icon('add', 15),
-          'Add Path',
-        ),
+        h('button', {title: 'Add model path', onclick: () => this.#addPath()}, icon('add', 15), 'Add Path'),
       ),
       this.#progress,
       h('div', {class: 'library'}, this.#templates.element, this.#list),
@@ -124,17 +115,7 @@ export class InsertTab {
         h('span', {text: location.title}),
         h('span', {class: 'tag', text: String(location.models.length)}),
         location.kind === 'added' &&
-          h(
-            'button',
-            {
-              type: 'button',
-              class: 'plain',
-              title: 'Remove this path',
-              'aria-label': `Remove ${location.title}`,
-              onclick: (event) => this.#removePath(event, location),
-            },
-            icon('close', 12),
-          ),
+          closeButton(`Remove ${location.title}`, (event) => this.#removePath(event, location)),
       ),
       body,
     );
@@ -257,29 +238,8 @@ export class InsertTab {
   }
 
   #addPath() {
-    const path = h('input', {
-      type: 'text',
-      spellcheck: 'false',
-      autofocus: true,
-      'aria-label': 'Folder',
-      placeholder: '/home/me/models',
-    });
-    new Dialog({
-      title: 'Add Path',
-      content: [labelled('Model directory', path)],
-      buttons: [
-        {title: 'Cancel'},
-        {
-          title: 'Add',
-          primary: true,
-          run: async () => {
-            this.#take(
-              (await this.page.request('library_add', {path: path.value.trim()})).locations,
-            );
-          },
-        },
-      ],
-    }).open();
+    void askText('Add Path', {label: 'Model directory', placeholder: '/home/me/models'}, 'Add', async (path) =>
+      this.#take((await this.page.request('library_add', {path})).locations));
   }
 
   async #removePath(event: Event, location: Location) {

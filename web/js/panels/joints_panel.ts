@@ -77,7 +77,6 @@ export class JointsPanel {
   #body = h('div', {class: 'joints-body'});
   #tabs = MODES.map(([mode, title]) =>
     h('button', {
-      type: 'button',
       role: 'tab',
       text: title,
       dataset: {mode},
@@ -163,7 +162,7 @@ export class JointsPanel {
         {class: 'row'},
         h(
           'button',
-          {type: 'button', onclick: () => this.#reset(joints)},
+          {onclick: () => this.#reset(joints)},
           icon('reset', 14),
           'Reset',
         ),

@@ -2,24 +2,12 @@
  * What a model's own panel shows of its body: mass, size, colour, and one panel for several models.
  * A field may stand for several properties: its `ops` say what a new value does. Pure.
  */
+import {geometryFields, isSimple} from './geometry_fields.js';
 import {sevenOf, sixOf} from './pose_rpy.js';
 import type {Field, Section} from './property_fields.js';
 import type {Geometry, Link, Material, Model, Operation} from '../protocol.js';
 
 const GREY = {ambient: [0.7, 0.7, 0.7, 1], diffuse: [0.7, 0.7, 0.7, 1]};
-/** Fields of a shape's size, by its type: path and what `geometry_fields` says of it. */
-const SIZES = {
-  box: [{name: 'size', label: 'size', type: 'vector', parts: ['x', 'y', 'z']}],
-  sphere: [{name: 'radius', label: 'radius', type: 'number'}],
-  cylinder: [{name: 'radius', label: 'radius', type: 'number'},
-    {name: 'length', label: 'length', type: 'number'}],
-  capsule: [{name: 'radius', label: 'radius', type: 'number'},
-    {name: 'length', label: 'length', type: 'number'}],
-  cone: [{name: 'radius', label: 'radius', type: 'number'},
-    {name: 'length', label: 'length', type: 'number'}],
-  ellipsoid: [{name: 'radii', label: 'radii', type: 'vector', parts: ['x', 'y', 'z']}],
-};
-
 const set = (target: string, path: string, value: unknown): Operation =>
     ({kind: 'set', target, path, value});
 
@@ -43,7 +31,7 @@ function sharedGeometry(link: Link) {
   if (link.collisions.length !== 1 || link.visuals.length !== 1) return null;
   const [{geometry: solid}] = link.collisions;
   const [{geometry: seen}] = link.visuals;
-  return solid.type === seen.type && solid.type in SIZES ? solid : null;
+  return solid.type === seen.type && isSimple(solid.type) ? solid : null;
 }
 
 /** The one value that all have, null where they differ. */
@@ -99,14 +87,15 @@ function massOps(link: Link, model: string, mass: number): Operation[] {
 function sizeFields(model: Model, shared: Geometry, entity: Record<string, unknown>): Field[] {
   const [link] = model.links;
   const target = linkTarget(link, model.name);
-  return SIZES[shared.type as keyof typeof SIZES].map(({name, ...look}) => {
+  return geometryFields(shared).slice(1).map((field) => {
+    const name = field.path.slice('geometry.'.length);
     entity[name] = (shared as unknown as Record<string, unknown>)[name];
-    return {path: name, ...look, unit: 'm', above: 0,
+    return {...field, path: name,
       ops: (value: unknown) => ({label: `Set ${name} of ${model.name}`, ops: [
-        set(`${target}::collision:${link.collisions[0].name}`, `geometry.${name}`, value),
-        set(`${target}::visual:${link.visuals[0].name}`, `geometry.${name}`, value),
-        ...(model.static ? [] : [{kind: 'compute_inertial', target}]),
-      ]})} as Field;
+        set(`${target}::collision:${link.collisions[0].name}`, field.path, value),
+        set(`${target}::visual:${link.visuals[0].name}`, field.path, value),
+        ...(model.static ? [] : [{kind: 'compute_inertial' as const, target}]),
+      ]})};
   });
 }
 

@@ -3,9 +3,9 @@
  * with its file and line.
  */
 import {RequestError} from '../connection.js';
-import {fill, h, rememberedInTab} from '../ui/dom.js';
+import {fill, h, rememberedInTab, textButton} from '../ui/dom.js';
 import {faultText} from '../ui/dialog.js';
-import {icon} from '../ui/icons.js';
+import {closeButton, icon, iconButton} from '../ui/icons.js';
 import type {Issue} from '../connection.js';
 
 const SECONDS = {error: 12, warning: 8, note: 4};
@@ -20,23 +20,12 @@ export class Notices {
   badge = h('span', {class: 'badge', hidden: true});
   /** Unix time in s of the last issue that this tab showed before its page was loaded. */
   #seenBefore = rememberedInTab.get(SEEN, 0);
-  button = h(
-    'button',
-    {
-      type: 'button',
-      class: 'plain notices-button',
-      title: 'Messages',
-      'aria-label': 'Messages',
-      'aria-expanded': 'false',
-      onclick: () => this.#toggle(),
-    },
-    icon('messages', 16),
-    this.badge,
-  );
+  button = iconButton('messages', 'Messages', () => this.#toggle(), 16, {class: 'plain notices-button', 'aria-expanded': 'false'});
 
   /** @param element  where the cards appear */
   constructor(element: HTMLElement) {
     this.element = element;
+    this.button.append(this.badge);
     this.#list.addEventListener('keydown', (event) => {
       if (event.key !== 'Escape') return;
       event.stopPropagation();
@@ -95,11 +84,7 @@ export class Notices {
       {class: `notice ${severity}`},
       icon(glyph(severity), 16),
       body(issue),
-      h(
-        'button',
-        {type: 'button', class: 'plain', 'aria-label': 'Dismiss', onclick: close},
-        icon('close', 12),
-      ),
+      closeButton('Dismiss', close),
     );
     let timer = setTimeout(close, SECONDS[severity] * 1000);
     card.addEventListener('pointerenter', () => clearTimeout(timer));
@@ -133,19 +118,11 @@ export class Notices {
         'div',
         {class: 'notice-head'},
         h('h2', {text: 'Messages'}),
-        h('button', {
-          type: 'button',
-          text: 'Clear',
-          onclick: () => {
-            this.entries = [];
-            this.#showList();
-          },
+        textButton('Clear', () => {
+          this.entries = [];
+          this.#showList();
         }),
-        h(
-          'button',
-          {type: 'button', class: 'plain', 'aria-label': 'Close', onclick: () => this.#toggle()},
-          icon('close', 14),
-        ),
+        closeButton('Close', () => this.#toggle(), 14),
       ),
       this.entries.length
         ? h(

@@ -116,7 +116,6 @@ function mountTabs(element: HTMLElement, page: Page) {
   );
   const buttons = TABS.map(([name, title], at) =>
     h('button', {
-      type: 'button',
       role: 'tab',
       class: TABS[at][0] === 'insert' ? 'edits' : '',
       id: `tab-button-${name}`,

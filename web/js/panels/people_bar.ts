@@ -1,5 +1,5 @@
 /** Who else has this world open, beside the menus: their names, and what they hold. */
-import {Dialog, labelled} from '../ui/dialog.js';
+import {askText} from '../ui/dialog.js';
 import {fill, h, remembered} from '../ui/dom.js';
 import {colorOf} from '../person_color.js';
 import type {Person} from '../protocol.js';
@@ -40,7 +40,6 @@ export function mountPeople(element: HTMLElement, {store}: Page) {
     const own = people.find(({number}) => number === me);
     fill(element,
       ...others.map((person) => h('button', {
-        type: 'button',
         class: 'plain person',
         title: `${person.name} ${doing(person)}`,
         style: `--person: ${colorOf(person)}`,
@@ -51,7 +50,7 @@ export function mountPeople(element: HTMLElement, {store}: Page) {
       }, h('i', {'aria-hidden': 'true'}), h('span', {text: person.name}),
       person.held.length > 0 && h('span', {class: 'soft', text: person.held.join(', ')}))),
       h('button', {
-        type: 'button', class: 'plain', text: `${own?.name ?? ''} (you)`, title: 'Change your name',
+        class: 'plain', text: `${own?.name ?? ''} (you)`, title: 'Change your name',
         onclick: () => askName(store, own?.name ?? ''),
       }));
   };
@@ -65,14 +64,8 @@ export function mountPeople(element: HTMLElement, {store}: Page) {
   });
 }
 
-async function askName(store: Page['store'], name: string) {
-  const input = h('input', {type: 'text', value: name, maxLength: 30, 'aria-label': 'Your name'});
-  await new Dialog({
-    title: 'Your name',
-    content: [labelled('Name', input)],
-    buttons: [{title: 'Cancel'}, {title: 'OK', primary: true, run: () => {
-      remembered.set('person-name', input.value.trim());
-      store.tellPresence({name: input.value.trim()});
-    }}],
-  }).open();
-}
+const askName = (store: Page['store'], value: string) =>
+  askText('Your name', {label: 'Name', value, maxlength: 30}, 'OK', (name) => {
+    remembered.set('person-name', name);
+    store.tellPresence({name});
+  });

@@ -4,7 +4,7 @@
  */
 import {saveBlob} from '../actions.js';
 import {elementsOf, fill, h, onActivate, onceAFrame, roving} from '../ui/dom.js';
-import {icon} from '../ui/icons.js';
+import {closeButton, icon} from '../ui/icons.js';
 import {drawPlot, freeColor, legendEntry} from '../ui/plot_canvas.js';
 import {csvOf, Series, take} from '../ui/plot_data.js';
 import {isTopicField, topicVariables, variablesOf} from './plot_variables.js';
@@ -44,7 +44,7 @@ export class Plots {
       ...SPANS.map(([title, value]) => h('option', {text: title, selected: value === 10})),
     );
     const tool = (glyph: string, text: string, run: () => void) =>
-      h('button', {type: 'button', onclick: run}, icon(glyph, 14), text);
+      h('button', {onclick: run}, icon(glyph, 14), text);
     const bar = h(
       'div',
       {class: 'dock-bar', role: 'toolbar', 'aria-label': 'Plots'},
@@ -55,11 +55,7 @@ export class Plots {
       tool('export', 'PNG', () => this.exportPng()),
       tool('trash', 'Clear', () => this.clear()),
       h('span', {class: 'spring'}),
-      h(
-        'button',
-        {type: 'button', class: 'plain', 'aria-label': 'Close plots', onclick: close},
-        icon('close', 15),
-      ),
+      closeButton('Close plots', close, 15),
     );
     fill(
       element,
@@ -336,20 +332,10 @@ class Plot {
       !this.#curves.length &&
         h('span', {class: 'soft', text: 'Click or drop variables to plot them'}),
       h('span', {class: 'spring'}),
-      h(
-        'button',
-        {
-          type: 'button',
-          class: 'plain',
-          'aria-label': 'Remove this canvas',
-          title: 'Remove this canvas',
-          onclick: () => {
-            [...this.#curves].forEach((curve) => this.#drop(curve));
-            this.#owner.remove(this);
-          },
-        },
-        icon('close', 12),
-      ),
+      closeButton('Remove this canvas', () => {
+        [...this.#curves].forEach((curve) => this.#drop(curve));
+        this.#owner.remove(this);
+      }),
     );
   }
 

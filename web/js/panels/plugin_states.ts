@@ -37,8 +37,7 @@ export function withSensorState(found: Found, store: {document: World|null, plug
   const {sensor, state} = sensorOf(store, row) ?? {};
   if (!sensor || !state) return found;
   const target = `${row.model}::${row.owner}::sensor:${sensor.name}`;
-  return {...found, sections: [...found.sections,
-    ...sensorPlugin(sensor, state, target).map((one) => ({...one, prefix: ''}))]};
+  return {...found, sections: [...found.sections, ...sensorPlugin(sensor, state, target)]};
 }
 
 /** A tag at the end of a row, red where something failed. */

@@ -38,6 +38,8 @@ export interface Section {
   /** that the paths begin at */
   entity: object|null|undefined;
   fields: Field[];
+  /** of the paths in `set` operations */
+  prefix?: string;
 }
 
 const field = (path: string, label: string, type: Field['type'], more: Partial<Field> = {}): Field =>

@@ -3,7 +3,7 @@
  * focus leaves. Updates from the server never overwrite text that the user is typing.
  */
 import {sevenOf, sixOf} from './pose_rpy.js';
-import {h} from '../ui/dom.js';
+import {h, textButton} from '../ui/dom.js';
 import {colorOf, colorText, numberText, parseNumber} from '../ui/text_format.js';
 import type {Field} from './property_fields.js';
 
@@ -66,9 +66,6 @@ function lineInput(field: InputField, attributes: Record<string, unknown>,
     Input & {element: HTMLInputElement, type: (text: string) => void} {
   let shown: unknown = null;
   const element = h('input', {
-    type: 'text',
-    autocomplete: 'off',
-    spellcheck: 'false',
     'aria-label': field.label,
     readOnly: Boolean(field.fixed),
     title: field.hint,
@@ -285,9 +282,7 @@ function tidy(value: number, parts: number) {
 }
 
 function buttonInput(field: InputField, commit: (value: unknown) => void) {
-  const element = h('button', {type: 'button', text: field.label, title: field.hint,
-    onclick: () => { commit(null); }});
-  return {element, show: () => {}};
+  return {element: textButton(field.label, () => commit(null), {title: field.hint}), show: () => {}};
 }
 
 function xmlInput(field: InputField, commit: Commit): Input {
@@ -304,7 +299,7 @@ function xmlInput(field: InputField, commit: Commit): Input {
 /** XML of several lines. Ctrl+Enter and loss of focus commit it; Escape discards it. */
 function xmlArea(field: InputField, commit: Commit): Input {
   let shown = '';
-  const element = h('textarea', {class: 'xml', rows: 8, spellcheck: 'false', 'aria-label': field.label,
+  const element = h('textarea', {class: 'xml', rows: 8, 'aria-label': field.label,
     title: field.hint});
   const restore = () => {
     delete element.dataset.edited;

@@ -11,8 +11,6 @@ import type {Field, Section} from './property_fields.js';
 import type {Row} from './world_rows.js';
 import type {World} from '../protocol.js';
 
-/** A section whose fields' paths begin below `prefix` of its target. */
-type BareSection = Section & {prefix: string};
 /** The heading and sections of a row. */
 export type Found = {title: string, sections: Section[]};
 
@@ -37,17 +35,10 @@ function titleOf(row: Row) {
 }
 
 const section = (title: string, target: string, entity: object|null|undefined, fields: Field[],
-    prefix = ''): BareSection => ({
-  key: `${target}|${title}`,
-  title,
-  target,
-  entity,
-  fields,
-  prefix,
-});
+    prefix = ''): Section => ({key: `${target}|${title}`, title, target, entity, fields, prefix});
 
 /** A field of an entity that has no such member is not for this version of the server. */
-function present({entity, fields, prefix}: BareSection) {
+function present({entity, fields, prefix = ''}: Section) {
   return fields
     .filter((field) => valueAt(entity, field.path) !== undefined)
     .map((field) => ({...field, local: field.path, path: prefix + field.path}));
@@ -68,7 +59,7 @@ const named = <T extends {name: string}>(list: T[]|undefined, name: string|undef
     (list ?? []).find((entity) => entity.name === name);
 
 /** By kind of row; null: there are none, or the entity is gone. */
-const KINDS: Record<string, (world: World, row: Row) => BareSection[]|null|undefined> = {
+const KINDS: Record<string, (world: World, row: Row) => Section[]|null|undefined> = {
   gui: (world) => [
     section('', '', world, table.GUI),
     section('Camera', '', world.gui_camera, table.GUI_CAMERA, 'gui_camera.'),
@@ -91,8 +82,7 @@ const KINDS: Record<string, (world: World, row: Row) => BareSection[]|null|undef
   wind: (world) => [section('', '', world.wind, table.WIND, 'wind.')],
   model: (world, row) => {
     const model = named(world.models, row.model);
-    return model && [section('', model.name, model, table.MODEL),
-      ...bodySections(model).map((one) => ({...one, prefix: ''}))];
+    return model && [section('', model.name, model, table.MODEL), ...bodySections(model)];
   },
   link: linkSections,
   joint: (world, row) => {
@@ -114,7 +104,7 @@ const KINDS: Record<string, (world: World, row: Row) => BareSection[]|null|undef
     const sensor = holder && named(holder.sensors, row.name);
     if (!model || !sensor) return null;
     const target = `${model.name}::${row.owner}::sensor:${sensor.name}`;
-    return [removal(sensor, target), ...sensorSections(sensor, target)].map((one) => ({...one, prefix: ''}));
+    return [removal(sensor, target), ...sensorSections(sensor, target)];
   },
   plugins: (world) => {
     const {entity, fields} = newPluginFields({name: '', plugins: world.plugins});
@@ -157,7 +147,7 @@ function linkSections(world: World, row: Row) {
       ),
     ),
     section('Inertial', target, link.inertial, table.INERTIAL, 'inertial.'),
-    {...newSensors(target), prefix: ''},
+    newSensors(target),
   ];
   // A collision and a visual may share a name: the target says which is meant.
   for (const collision of link.collisions) {

@@ -2,26 +2,21 @@
  * The bar below the view: play, pause, step, the figures of time; while a log is replayed its
  * slider in their place.
  */
-import {fill, h, remembered, roving} from '../ui/dom.js';
+import {fill, h, remembered, roving, textButton} from '../ui/dom.js';
 import {clockText} from '../ui/text_format.js';
-import {icon} from '../ui/icons.js';
+import {icon, iconButton} from '../ui/icons.js';
 import type {Page} from './panels.js';
 
 const RATES = [0.1, 0.25, 0.5, 1, 2, 5, 10];
 
 /** The mean of the last factors of real time, as Gazebo's 20 statistics. */
 class Mean {
-  kept;
   values: number[] = [];
-
-  constructor(kept = 20) {
-    this.kept = kept;
-  }
 
   /** @returns the mean with the new one */
   add(value: number): number {
     this.values.push(value);
-    if (this.values.length > this.kept) this.values.shift();
+    if (this.values.length > 20) this.values.shift();
     return this.values.reduce((sum, one) => sum + one, 0) / this.values.length;
   }
 
@@ -77,12 +72,8 @@ export class TimeBar {
 
   #live;
   #replay;
-  #play = h('button', {type: 'button', class: 'play edits', onclick: () => this.actions.togglePlay()});
-  #step = h(
-    'button',
-    {type: 'button', class: 'edits', title: 'Step', 'aria-label': 'Step', onclick: () => this.#doStep()},
-    icon('step'),
-  );
+  #play = h('button', {class: 'play edits', onclick: () => this.actions.togglePlay()});
+  #step = iconButton('step', 'Step', () => this.#doStep(), 18, {class: 'edits'});
   #steps = h('input', {
     type: 'number',
     min: 1,
@@ -105,7 +96,7 @@ export class TimeBar {
   #file = h('span', {class: 'file-name'});
   #recording = h('span', {class: 'recording', hidden: true, text: '● recording'});
   #log = {
-    play: h('button', {type: 'button', class: 'play', onclick: () => this.#playLog()}),
+    play: h('button', {class: 'play', onclick: () => this.#playLog()}),
     slider: h('input', {
       type: 'range',
       min: 0,
@@ -127,17 +118,6 @@ export class TimeBar {
   #lastIterations = -1;
 
   #liveBar() {
-    const reset = h(
-      'button',
-      {
-        type: 'button',
-        class: 'edits',
-        title: 'Reset time',
-        'aria-label': 'Reset time',
-        onclick: () => this.actions.resetTime(),
-      },
-      icon('reset', 16),
-    );
     return h(
       'div',
       {class: 'time-part'},
@@ -154,7 +134,7 @@ export class TimeBar {
       labelledFigure(this.#figures.real, 'real'),
       labelledFigure(this.#figures.iterations, 'iterations'),
       labelledFigure(this.#figures.fps, 'fps'),
-      reset,
+      iconButton('reset', 'Reset time', () => this.actions.resetTime(), 16, {class: 'edits'}),
     );
   }
 
@@ -211,12 +191,6 @@ export class TimeBar {
   }
 
   #replayBar() {
-    const button = (glyph: string, label: string, run: () => void) =>
-      h(
-        'button',
-        {type: 'button', title: label, 'aria-label': label, onclick: run},
-        icon(glyph, 16),
-      );
     const seek = (time: number) => this.actions.logSeek(time);
     const ends = () => [this.store.log?.begin ?? 0, this.store.log?.end ?? 0];
     const log = this.#log;
@@ -225,17 +199,17 @@ export class TimeBar {
     return h(
       'div',
       {class: 'time-part replay', hidden: true},
-      button('begin', 'Jump to start', () => seek(ends()[0])),
-      button('left', 'Step back', by(-0.05)),
+      iconButton('begin', 'Jump to start', () => seek(ends()[0]), 16),
+      iconButton('left', 'Step back', by(-0.05), 16),
       log.play,
-      button('right', 'Step forward', by(0.05)),
-      button('end', 'Jump to end', () => seek(ends()[1])),
+      iconButton('right', 'Step forward', by(0.05), 16),
+      iconButton('end', 'Jump to end', () => seek(ends()[1]), 16),
       log.slider,
       log.time,
       h('span', {text: '/'}),
       log.end,
       log.rate,
-      h('button', {type: 'button', class: 'close-log', text: 'Close log', onclick: () => this.actions.logClose()}),
+      textButton('Close log', () => this.actions.logClose(), {class: 'close-log'}),
     );
   }
 

@@ -1,7 +1,7 @@
 /** The tool bar: Gazebo's buttons from left to right, with its drop-downs. */
 import {closestTo, elementsOf, fill, h, roving} from '../ui/dom.js';
 import {run} from '../hotkeys.js';
-import {icon} from '../ui/icons.js';
+import {iconButton} from '../ui/icons.js';
 import {closePopup, openPopup} from '../ui/popup.js';
 import {Video} from './video_recorder.js';
 import type {Actions} from '../actions.js';
@@ -32,55 +32,43 @@ const VIEWS = ['top', 'bottom', 'front', 'back', 'left', 'right', 'home'] as con
 
 export function mountToolBar(element: HTMLElement, page: Page) {
   const {store, actions} = page;
-  const button = (glyph: string, title: string, run: () => void, more = {}) =>
-    h(
-      'button',
-      {
-        type: 'button',
-        title,
-        'aria-label': title.replace(/ \(.*\)$/, ''),
-        onclick: run,
-        ...more,
-      },
-      icon(glyph),
-    );
   const line = (more = '') => h('span', {class: `tool-line ${more}`, role: 'separator'});
 
   const modes = MODES.map(([mode, action, glyph, title]) =>
-    button(glyph, title, () => run(actions, action), {role: 'radio', dataset: {mode}}),
+    iconButton(glyph, title, () => run(actions, action), 18, {role: 'radio', dataset: {mode}}),
   );
-  const undo = button('undo', 'Undo (Ctrl+Z)', () => actions.undo());
-  const redo = button('redo', 'Redo (Shift+Ctrl+Z)', () => actions.redo());
+  const undo = iconButton('undo', 'Undo (Ctrl+Z)', () => actions.undo());
+  const redo = iconButton('redo', 'Redo (Shift+Ctrl+Z)', () => actions.redo());
   const undoList = arrow('Undo history', (anchor) => historyList(page, 'undo', anchor));
   const redoList = arrow('Redo history', (anchor) => historyList(page, 'redo', anchor));
   const shapes = SHAPES.map(([shape, title]) =>
-    button(shape, title, () => actions.insertShape(shape)),
+    iconButton(shape, title, () => actions.insertShape(shape)),
   );
   const lights = LIGHTS.map(([type, title]) =>
-    button(type, title, () => actions.insertLight(type)),
+    iconButton(type, title, () => actions.insertLight(type)),
   );
-  const copy = button('copy', 'Copy (Ctrl+C)', () => actions.copy());
-  const paste = button('paste', 'Paste (Ctrl+V)', () => actions.paste());
-  const align = button('align', 'Align', () => {
+  const copy = iconButton('copy', 'Copy (Ctrl+C)', () => actions.copy());
+  const paste = iconButton('paste', 'Paste (Ctrl+V)', () => actions.paste());
+  const align = iconButton('align', 'Align', () => {
     openPopup(alignPanel(page), {anchor: align, onClose: () => actions.alignPreview(null)});
     focusFirst('.popup input');
   });
-  const snap = button('snap', 'Snap (N)', () => actions.snapMode());
-  const measure = button('measure', 'Measure (M)', () => actions.measureMode());
-  const views = button('views', 'View angle', () => {
+  const snap = iconButton('snap', 'Snap (N)', () => actions.snapMode());
+  const measure = iconButton('measure', 'Measure (M)', () => actions.measureMode());
+  const views = iconButton('views', 'View angle', () => {
     openPopup(viewPanel(page, closePopup), {anchor: views});
     focusFirst('.popup button');
   });
-  const camera = button('camera', 'Screenshot', () => actions.screenshot());
-  const record = button('video', 'Record video', () => video.toggle());
+  const camera = iconButton('camera', 'Screenshot', () => actions.screenshot());
+  const record = iconButton('video', 'Record video', () => video.toggle());
   const video = new Video(page, () => {
     record.setAttribute('aria-pressed', String(video.recording));
     record.title = video.recording ? 'Stop recording and save video' : 'Record video';
   });
-  const log = button('log', 'Log data (Alt+R)', () => actions.logs());
-  const plot = button('plot', 'Plot (Ctrl+P)', () => actions.plot());
-  const joints = button('joints', 'Joints panel', () => actions.joints());
-  const topics = button('topics', 'Topics (Alt+T)', () => actions.topics());
+  const log = iconButton('log', 'Log data (Alt+R)', () => actions.logs());
+  const plot = iconButton('plot', 'Plot (Ctrl+P)', () => actions.plot());
+  const joints = iconButton('joints', 'Joints panel', () => actions.joints());
+  const topics = iconButton('topics', 'Topics (Alt+T)', () => actions.topics());
 
   fill(
     element,
@@ -165,18 +153,7 @@ export function mountToolBar(element: HTMLElement, page: Page) {
 }
 
 function arrow(title: string, open: (anchor: HTMLElement) => void) {
-  const button = h(
-    'button',
-    {
-      type: 'button',
-      class: 'narrow',
-      title,
-      'aria-label': title,
-      'aria-haspopup': 'menu',
-      onclick: () => { open(button); },
-    },
-    icon('down', 12),
-  );
+  const button = iconButton('down', title, () => open(button), 12, {class: 'narrow', 'aria-haspopup': 'menu'});
   return button;
 }
 
@@ -193,7 +170,6 @@ function historyList({store, actions}: Page, which: 'undo'|'redo', anchor: HTMLE
     h(
       'button',
       {
-        type: 'button',
         class: 'menu-item',
         role: 'menuitem',
         onclick: () => {
@@ -235,7 +211,6 @@ function alignPanel({store, actions}: Page) {
     const preview = () => actions.alignPreview(choice(axis, at));
     const end = () => actions.alignPreview(null);
     return h('button', {
-      type: 'button',
       text: {min: 'Min', center: 'Center', max: 'Max'}[at],
       'aria-label': `Align ${axis.toUpperCase()} ${at}`,
       onpointerenter: preview,
@@ -271,7 +246,6 @@ function viewPanel({store, actions}: Page, close: () => void) {
   const title = (side: string) => side[0].toUpperCase() + side.slice(1);
   const projection = (name: 'perspective'|'orthographic') =>
     h('button', {
-      type: 'button',
       text: title(name),
       'aria-pressed': String(store.camera.projection === name),
       onclick: run(() => actions.setProjection(name)),
@@ -284,7 +258,6 @@ function viewPanel({store, actions}: Page, close: () => void) {
       {class: 'view-grid'},
       ...VIEWS.map((side) =>
         h('button', {
-          type: 'button',
           text: title(side),
           onclick: run(() => actions.viewFrom(side)),
         }),

@@ -1,6 +1,6 @@
 /** Windows over the view for topics that are no part of the scene: pictures and text. */
 import {fill, h} from '../ui/dom.js';
-import {icon} from '../ui/icons.js';
+import {closeButton} from '../ui/icons.js';
 import type {ImageView} from '../protocol.js';
 import type {TopicView} from '../topics/topics.js';
 import type {Page} from './panels.js';
@@ -46,10 +46,7 @@ export class TopicWindows {
       {class: 'topic-window', 'aria-label': topic},
       h('header', {},
         h('h2', {text: topic, title: topic}),
-        h('button', {
-          type: 'button', class: 'plain', 'aria-label': `Close ${topic}`,
-          onclick: () => this.#page.topics.show(topic, false),
-        }, icon('close', 12))),
+        closeButton(`Close ${topic}`, () => this.#page.topics.show(topic, false))),
       body,
     );
     this.#container.append(element);

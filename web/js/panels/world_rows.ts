@@ -72,8 +72,8 @@ export function worldRows(document: World|null, open: Set<string>, wanted = ''):
       }),
   );
   for (const {key, label, kind, glyph, all} of [
-    {key: 'actors', label: 'Actors', kind: 'actor', glyph: 'model', all: named(document.actors)},
-    {key: 'roads', label: 'Roads', kind: 'road', glyph: 'scene', all: named(document.roads)},
+    {key: 'actors', label: 'Actors', kind: 'actor', glyph: 'model', all: document.actors as {name: string}[]},
+    {key: 'roads', label: 'Roads', kind: 'road', glyph: 'scene', all: document.roads},
   ]) {
     if (!all.length) continue;
     group(rows, open, key, counted(label, all, all), glyph, all, (one) =>
@@ -179,9 +179,4 @@ export function modelOf(document: World|null, name: string) {
   const models = document?.models ?? [];
   const [owner] = splitScoped(name, (one) => models.some((model) => model.name === one));
   return models.find((model) => model.name === owner) ?? null;
-}
-
-/** Entities of which only the names are shown. */
-function named(entities: {name: string}[]) {
-  return entities;
 }

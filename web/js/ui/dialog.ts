@@ -1,8 +1,8 @@
 /**
  * Windows over the page: a title, a content, buttons. Escape and the cross answer as Cancel does.
  */
-import {closestTo, elementsOf, h} from './dom.js';
-import {icon} from './icons.js';
+import {closestTo, elementsOf, followPointer, h} from './dom.js';
+import {closeButton} from './icons.js';
 
 /** Text that appears if a button's work exceeds `GLANCE`, or if the user tries to close the window. */
 const AT_WORK = 'Working ...';
@@ -75,16 +75,7 @@ export class Dialog {
       'div',
       {class: 'dialog-head'},
       h('h2', {id, text: title}),
-      h(
-        'button',
-        {
-          type: 'button',
-          class: 'plain',
-          'aria-label': 'Close',
-          onclick: () => this.#leave(),
-        },
-        icon('close', 16),
-      ),
+      closeButton('Close', () => this.#leave(), 16),
     );
     this.element = h('dialog', {class: `dialog ${name}`, 'aria-labelledby': id}, head, form);
     this.element.addEventListener('cancel', (event) => {
@@ -214,6 +205,29 @@ export function ask(title: string, text: string, buttons: DialogButton[]): Promi
   return new Dialog({title, content, buttons, name: 'question'}).open();
 }
 
+/**
+ * A dialog with one field for a text.
+ * @param field  its label, and more attributes
+ * @param run  receives the text; rejects with what is wrong
+ * @returns what `run` returns; undefined if the user cancels
+ */
+export function askText<T>(title: string, {label, note = '', ...attributes}: {label: string, note?: string, value?: string,
+    placeholder?: string, maxlength?: number}, button: string, run: (text: string) => T|Promise<T>): Promise<T|undefined> {
+  const input = h('input', {...attributes, autofocus: true});
+  return new Dialog({title, content: [labelled(label, input), ...(note ? [h('p', {class: 'soft', text: note})] : [])],
+    buttons: [{title: 'Cancel'}, {title: button, primary: true, run: () => run(input.value.trim())}]}).open() as Promise<T|undefined>;
+}
+
+/**
+ * Asks what becomes of unsaved changes.
+ * @returns whether the user discards them, or has saved them
+ */
+export async function mayDiscard(title: string, text: string, save: () => Promise<boolean>) {
+  const answer = await ask(title, text, [{title: 'Cancel'}, {title: "Don't Save", value: 'discard', danger: true},
+    {title: 'Save', value: 'save', primary: true}]);
+  return answer === 'discard' || (answer === 'save' && save());
+}
+
 /** A labelled field of a dialog. */
 export function labelled(label: string, input: Node, more?: Node) {
   return h('label', {class: 'dialog-field'}, h('span', {text: label}), input, more);
@@ -226,18 +240,11 @@ function movable(element: HTMLElement, handle: HTMLElement) {
     const box = element.getBoundingClientRect();
     const parent = element.offsetParent?.getBoundingClientRect() ?? {left: 0, top: 0};
     const offset = [event.clientX - box.left, event.clientY - box.top];
-    handle.setPointerCapture(event.pointerId);
-    const move = (moved: PointerEvent) => {
+    followPointer(handle, event, (moved) => {
       const left = Math.min(Math.max(moved.clientX - offset[0], 0), window.innerWidth - 80);
       const top = Math.min(Math.max(moved.clientY - offset[1], 0), window.innerHeight - 40);
       Object.assign(element.style, {left: `${left - parent.left}px`, top: `${top - parent.top}px`, margin: '0'});
-    };
-    const end = () => {
-      handle.removeEventListener('pointermove', move);
-      handle.removeEventListener('pointerup', end);
-    };
-    handle.addEventListener('pointermove', move);
-    handle.addEventListener('pointerup', end);
+    });
   });
 }
 

@@ -9,6 +9,10 @@ export type Child = Node|string|number|null|undefined|false;
 type Attributes = {[K in keyof HTMLElementEventMap as `on${K}`]?: ((event: HTMLElementEventMap[K]) => unknown)|null}
     & Record<string, unknown>;
 
+/** Attributes of elements that are made without them: a button submits no form, names and paths are not checked as words. */
+const DEFAULTS: Record<string, Attributes> = {button: {type: 'button'}, textarea: {spellcheck: 'false'},
+  input: {type: 'text', spellcheck: 'false', autocomplete: 'off'}};
+
 /**
  * An element. Attributes are set by name; `on…` functions become listeners, `class`, `text`,
  * `dataset` and boolean attributes do what one expects; null and false leave an attribute out.
@@ -16,7 +20,7 @@ type Attributes = {[K in keyof HTMLElementEventMap as `on${K}`]?: ((event: HTMLE
 export function h<K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Attributes = {},
     ...children: Child[]): HTMLElementTagNameMap[K] {
   const element = document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) {
+  for (const [name, value] of Object.entries({...DEFAULTS[tag], ...attributes})) {
     if (value === null || value === undefined || value === false) continue;
     if (typeof value === 'function') {
       element.addEventListener(name.slice(2), value as EventListener);
@@ -28,6 +32,10 @@ export function h<K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Att
   element.append(...nodesOf(children));
   return element;
 }
+
+/** A button with a text. */
+export const textButton = (text: string, run: (event: Event) => unknown, more: Attributes = {}) =>
+  h('button', {text, onclick: run, ...more});
 
 function nodesOf(children: Child[]) {
   return children.flatMap((child) =>
@@ -100,6 +108,13 @@ export function byId(id: string): HTMLElement {
 export function closestTo(event: Event, selector: string): HTMLElement|null {
   const found = event.target instanceof Element ? event.target.closest(selector) : null;
   return found instanceof HTMLElement ? found : null;
+}
+
+/** Calls a function for each movement of a pressed pointer, until it is released. */
+export function followPointer(element: HTMLElement, {pointerId}: PointerEvent, move: (event: PointerEvent) => void) {
+  element.setPointerCapture(pointerId);
+  element.addEventListener('pointermove', move);
+  element.addEventListener('lostpointercapture', () => element.removeEventListener('pointermove', move), {once: true});
 }
 
 /** Whether an element needs the arrow keys, Home and End for itself. */

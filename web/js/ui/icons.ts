@@ -1,8 +1,8 @@
 /**
  * The icons: our own drawings on a 20x20 grid, in the colour of the text around them.
  */
-
-const SVG = 'http://www.w3.org/2000/svg';
+import {h} from './dom.js';
+import {svg} from './svg.js';
 
 /** Path data by name; `fill:` in front means a filled shape, else a line. */
 const SHAPES: Record<string, string[]> = {
@@ -111,32 +111,23 @@ const SHAPES: Record<string, string[]> = {
  * @param name  one of `SHAPES`
  * @param size  in px
  */
-export function icon(name: string, size = 18): SVGSVGElement {
-  const svg = document.createElementNS(SVG, 'svg');
+export function icon(name: string, size = 18) {
   const shapes = SHAPES[name];
   if (!shapes) throw new Error(`no icon ${name}`);
-  for (const [key, value] of Object.entries({
-    viewBox: '0 0 20 20',
-    width: size,
-    height: size,
-    fill: 'none',
-    stroke: 'currentColor',
-    'stroke-width': 1.4,
-    'stroke-linecap': 'round',
-    'stroke-linejoin': 'round',
-    'aria-hidden': 'true',
-    class: 'icon',
-  }))
-    svg.setAttribute(key, String(value));
-  for (const shape of shapes) {
-    const path = document.createElementNS(SVG, 'path');
-    const filled = shape.startsWith('fill:');
-    path.setAttribute('d', filled ? shape.slice(5) : shape);
-    if (filled) {
-      path.setAttribute('fill', 'currentColor');
-      path.setAttribute('stroke', 'none');
-    }
-    svg.append(path);
-  }
-  return svg;
+  return svg('svg', {viewBox: '0 0 20 20', width: size, height: size, fill: 'none', stroke: 'currentColor', 'stroke-width': 1.4,
+    'stroke-linecap': 'round', 'stroke-linejoin': 'round', 'aria-hidden': 'true', class: 'icon'},
+  ...shapes.map((shape) => (shape.startsWith('fill:')
+    ? svg('path', {d: shape.slice(5), fill: 'currentColor', stroke: 'none'}) : svg('path', {d: shape}))));
 }
+
+/**
+ * A button with an icon.
+ * @param title  may end in the keys that do the same, in parentheses
+ * @param size  of the icon, px
+ */
+export const iconButton = (glyph: string, title: string, run: (event: Event) => unknown, size = 18, more: Record<string, unknown> = {}) =>
+  h('button', {title, 'aria-label': title.replace(/ \(.*\)$/, ''), onclick: run, ...more}, icon(glyph, size));
+
+/** A button with a cross; `size`: of the cross, px. */
+export const closeButton = (title: string, run: (event: Event) => unknown, size = 12) =>
+  iconButton('close', title, run, size, {class: 'plain'});

@@ -10,7 +10,6 @@ export function mountMenuBar(element: HTMLElement, menus: Menu[]) {
   let open: number|null = null;
   const buttons = menus.map((menu) =>
     h('button', {
-      type: 'button',
       class: `menu-title ${menu.edits ? 'edits' : ''}`,
       role: 'menuitem',
       'aria-haspopup': 'menu',

@@ -1,6 +1,6 @@
 /** Draws curves with their axes onto a canvas. */
 import {h, themeColor} from './dom.js';
-import {icon} from './icons.js';
+import {closeButton} from './icons.js';
 import {numberText} from './text_format.js';
 import {extent, ticks} from './plot_data.js';
 import type {Series} from './plot_data.js';
@@ -31,7 +31,7 @@ export const freeColor = (curves: Curve[]) =>
 /** An entry of a legend. @param remove  called when the curve is to be removed */
 export function legendEntry({series: {variable}, color}: Curve, remove: () => void) {
   return h('span', {class: 'plot-key'}, h('i', {style: `background:${color}`}), variable,
-    h('button', {type: 'button', class: 'plain', 'aria-label': `Remove ${variable}`, onclick: remove}, icon('close', 10)));
+    closeButton(`Remove ${variable}`, remove, 10));
 }
 
 const LEFT = 62;

@@ -38,6 +38,7 @@ export function openPopup(content: HTMLElement, {anchor, x = 0, y = 0, onClose,
     keepFocus = false}: PopupOptions): () => void {
   closePopup();
   const before = document.activeElement;
+  const opened = new AbortController();
   const popup = h('div', {class: 'popup'}, content);
   document.body.append(popup);
   place(popup, anchor ? anchor.getBoundingClientRect() : {left: x, bottom: y, top: y});
@@ -59,17 +60,16 @@ export function openPopup(content: HTMLElement, {anchor, x = 0, y = 0, onClose,
     const hadFocus =
       popup.contains(document.activeElement) || document.activeElement === document.body;
     popup.remove();
-    document.removeEventListener('pointerdown', outside, true);
-    document.removeEventListener('keydown', key, true);
-    window.removeEventListener('blur', close);
+    opened.abort();
     const focused = anchor ?? before;
     if (hadFocus && !keepFocus && focused instanceof HTMLElement) focused.focus();
     onClose?.();
   };
   closeOpen = close;
-  document.addEventListener('pointerdown', outside, true);
-  document.addEventListener('keydown', key, true);
-  window.addEventListener('blur', close);
+  const {signal} = opened;
+  document.addEventListener('pointerdown', outside, {capture: true, signal});
+  document.addEventListener('keydown', key, {capture: true, signal});
+  window.addEventListener('blur', close, {signal});
   popup.addEventListener('contextmenu', (event) => event.preventDefault());
   return close;
 }
@@ -109,7 +109,6 @@ function menuItem(item: MenuItem, close: () => void): HTMLElement[] {
     h(
       'button',
       {
-        type: 'button',
         class: 'menu-item',
         role: check ? 'menuitemcheckbox' : 'menuitem',
         'aria-checked': check ? String(on) : null,

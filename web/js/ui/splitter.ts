@@ -1,5 +1,5 @@
 /** Bars that change the size of a panel, by mouse or arrow keys; the size is remembered. */
-import {h, remembered} from './dom.js';
+import {followPointer, h, remembered} from './dom.js';
 
 /** A bar that lies between two panels, for `splitter`. */
 export function lyingBar(label: string) {
@@ -32,15 +32,8 @@ export function splitter(bar: HTMLElement, {key, initial, min, max, from, within
     return box.bottom - event.clientY;
   };
   bar.addEventListener('pointerdown', (event) => {
-    bar.setPointerCapture(event.pointerId);
     const offset = size - sizeAt(event);
-    const move = (moved: PointerEvent) => set(sizeAt(moved) + offset);
-    const end = () => {
-      bar.removeEventListener('pointermove', move);
-      bar.removeEventListener('lostpointercapture', end);
-    };
-    bar.addEventListener('pointermove', move);
-    bar.addEventListener('lostpointercapture', end);
+    followPointer(bar, event, (moved) => set(sizeAt(moved) + offset));
   });
   const [less, more] = {
     left: ['ArrowLeft', 'ArrowRight'],

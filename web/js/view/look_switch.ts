@@ -9,7 +9,7 @@ import type {Store} from '../store.js';
 
 /** @param parent  the view's element */
 export function mountLookSwitch(parent: HTMLElement, {store, actions}: {store: Store, actions: Actions}) {
-  const button = h('button', {type: 'button', class: 'look-switch', onclick: () =>
+  const button = h('button', {class: 'look-switch', onclick: () =>
     actions.toggleOverlay('cameraColors')});
   const show = () => {
     const scene = store.document?.scene;

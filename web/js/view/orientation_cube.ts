@@ -33,7 +33,6 @@ export class OrientationCube {
       const name = h('span', {text: side[0].toUpperCase() + side.slice(1)});
       this.#faces.set(side, name);
       return h('button', {
-        type: 'button',
         tabindex: -1,
         title: `View from ${side}`,
         style: `transform: ${turn} translateZ(${HALF}px)`,

@@ -63,8 +63,8 @@ export async function commandDialog(page: Page) {
   const commands = commandsOf(page);
   let [at, shown] = [0, commands];
   const list = h('div', {class: 'command-list', role: 'listbox', id: 'command-list', 'aria-label': 'Commands'});
-  const input = h('input', {type: 'text', role: 'combobox', 'aria-expanded': 'true', 'aria-controls': 'command-list',
-    'aria-autocomplete': 'list', 'aria-label': 'Command', autocomplete: 'off', spellcheck: 'false', autofocus: true,
+  const input = h('input', {role: 'combobox', 'aria-expanded': 'true', 'aria-controls': 'command-list',
+    'aria-autocomplete': 'list', 'aria-label': 'Command', autofocus: true,
     placeholder: 'Type a command'});
   const show = () => {
     const first = Math.max(0, Math.min(at - MOST + 1, shown.length - MOST));

@@ -2,7 +2,7 @@
  * Apply Force/Torque: stays beside the view, so that its arrows can be seen and turned there.
  */
 import {Dialog} from '../../ui/dialog.js';
-import {h} from '../../ui/dom.js';
+import {h, textButton} from '../../ui/dom.js';
 import {makeInput} from '../property_inputs.js';
 import {modelOf} from '../world_rows.js';
 import type {Model} from '../../protocol.js';
@@ -52,12 +52,7 @@ class VectorGroup {
         {class: 'row'},
         h('span', {text: 'Magnitude'}),
         this.#size.element,
-        h('button', {
-          type: 'button',
-          text: 'Clear',
-          'aria-label': `Clear ${title.toLowerCase()}`,
-          onclick: () => this.set([0, 0, 0]),
-        }),
+        textButton('Clear', () => this.set([0, 0, 0]), {'aria-label': `Clear ${title.toLowerCase()}`}),
       ),
       this.#note,
     );

@@ -49,7 +49,7 @@ async function insert({actions, store: {select}, store}: Page, op: Operation) {
 /** Stores the files as a model folder; `found.name` is the one that was chosen. */
 async function store({request}: Page, files: DroppedFile[],
     found: {kind: string, name: string}) {
-  const name = h('input', {type: 'text', value: found.name, spellcheck: 'false', 'aria-label': 'Model name'});
+  const name = h('input', {value: found.name, 'aria-label': 'Model name'});
   const density = h('input', {type: 'number', value: WATER, min: 1, step: 'any', 'aria-label': 'Density'});
   const mesh = found.kind === 'mesh';
   const dialog = new Dialog({

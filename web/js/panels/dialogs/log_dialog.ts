@@ -1,6 +1,6 @@
 /** Log data: records the state of the world, lists what was recorded, opens it to be replayed. */
 import {Dialog} from '../../ui/dialog.js';
-import {fill, h} from '../../ui/dom.js';
+import {fill, h, textButton} from '../../ui/dom.js';
 import {bytesText} from '../../ui/text_format.js';
 import {icon} from '../../ui/icons.js';
 import type {Issue} from '../../connection.js';
@@ -8,12 +8,10 @@ import type {Page} from '../panels.js';
 
 export function logsDialog({store, actions}: Page): Promise<unknown> {
   const name = h('input', {
-    type: 'text',
     placeholder: 'default: date and time',
     'aria-label': 'Log name',
-    spellcheck: 'false',
   });
-  const record = h('button', {type: 'button'});
+  const record = h('button');
   const list = h('div', {class: 'folder-list', 'aria-label': 'Logs'});
   const check = (outcome: {ok: boolean, issues: Issue[]}) => {
     dialog.say(outcome.ok ? '' : outcome.issues[0].message);
@@ -36,14 +34,9 @@ export function logsDialog({store, actions}: Page): Promise<unknown> {
                 class: 'more',
                 text: `${bytesText(log.bytes)}, ${new Date(log.modified * 1000).toLocaleString()}`,
               }),
-              h('button', {
-                type: 'button',
-                text: 'Replay',
-                'aria-label': `Replay ${log.name}`,
-                onclick: async () => {
-                  if (check(await actions.logOpen(log.name))) dialog.close(log.name);
-                },
-              }),
+              textButton('Replay', async () => {
+                if (check(await actions.logOpen(log.name))) dialog.close(log.name);
+              }, {'aria-label': `Replay ${log.name}`}),
             ),
           )
         : [h('p', {class: 'empty', text: 'No logs'})]),

@@ -1,6 +1,6 @@
 /** Recover: unsaved changes of earlier sessions, and what was discarded in the last week. */
 import {Dialog} from '../../ui/dialog.js';
-import {fill, h} from '../../ui/dom.js';
+import {fill, h, textButton} from '../../ui/dom.js';
 import {icon} from '../../ui/icons.js';
 import type {Recoverable} from '../../protocol.js';
 import type {Page} from '../panels.js';
@@ -29,18 +29,15 @@ export function recoverDialog({store, actions, notices}: Page):
       h('span', {class: 'label', text: file.split('/').pop() || title}),
       h('span', {class: 'more', text: `${new Date(time * 1000).toLocaleString()}${
         discarded ? ', discarded' : ''}`}),
-      h('button', {
-        type: 'button', text: 'Recover', 'aria-label': `Recover ${title}`,
-        onclick: async () => {
-          const {ok, issues} = await actions.recoverEntry(name);
-          if (!ok) {
-            dialog.say(issues[0].message);
-            return;
-          }
-          dialog.close(name);
-          notices.say(`Recovered unsaved changes to ${title}`);
-        },
-      }),
+      textButton('Recover', async () => {
+        const {ok, issues} = await actions.recoverEntry(name);
+        if (!ok) {
+          dialog.say(issues[0].message);
+          return;
+        }
+        dialog.close(name);
+        notices.say(`Recovered unsaved changes to ${title}`);
+      }, {'aria-label': `Recover ${title}`}),
     );
   };
   actions.recoverable().then(({ok, value, issues}) => {

@@ -12,7 +12,7 @@ function fieldOf(parameter: TemplateParameter): Field {
   const label = {'aria-label': title};
   if (kind === 'flag') return {parameter, input: h('input', {type: 'checkbox', checked: Boolean(parameter.default), ...label})};
   const value = String(parameter.default);
-  if (kind === 'text') return {parameter, input: h('input', {type: 'text', spellcheck: 'false', value, ...label})};
+  if (kind === 'text') return {parameter, input: h('input', {value, ...label})};
   return {parameter, input: h('input', {type: 'number', step: 'any', value, min: minimum, max: maximum,
     title: `${minimum} to ${maximum} ${unit}`.trim(), ...label})};
 }

@@ -4,8 +4,8 @@
  * The server answers `folders {path}` with {path, parent, roots, folders, files}.
  */
 import {hasIssue} from '../../connection.js';
-import {Dialog, ask, faultText, labelled} from '../../ui/dialog.js';
-import {fill, h, roving} from '../../ui/dom.js';
+import {Dialog, ask, askText, faultText, labelled, mayDiscard} from '../../ui/dialog.js';
+import {fill, h, roving, textButton} from '../../ui/dom.js';
 import {bytesText} from '../../ui/text_format.js';
 import {icon} from '../../ui/icons.js';
 import type {Page} from '../panels.js';
@@ -51,7 +51,7 @@ class FolderList {
   constructor(request: RequestFunction, {onFile, onOpen, onFault}: FolderHandlers, create: boolean) {
     this.request = request;
     this.handlers = {onFile, onOpen, onFault};
-    const creates = create && h('button', {type: 'button', text: 'New Folder…', onclick: () => this.#create()});
+    const creates = create && textButton('New Folder…', () => this.#create());
     this.element = h(
       'div',
       {class: 'folders'},
@@ -90,15 +90,9 @@ class FolderList {
   async #create() {
     const parent = this.listing?.path;
     if (!parent) return;
-    const name = h('input', {type: 'text', spellcheck: 'false', autocomplete: 'off', autofocus: true,
-      'aria-label': 'Folder name'});
-    const path = await new Dialog({
-      title: 'New Folder',
-      content: [labelled('Folder name', name)],
-      buttons: [{title: 'Cancel'}, {title: 'Create', primary: true,
-        run: async () => (await this.request('new_folder', {parent, name: name.value})).path}],
-    }).open();
-    if (typeof path === 'string') await this.go(path);
+    const path = await askText('New Folder', {label: 'Folder name'}, 'Create', async (name) =>
+      (await this.request('new_folder', {parent, name})).path);
+    if (path) await this.go(path);
   }
 
   #show() {
@@ -113,7 +107,6 @@ class FolderList {
         h(
           'button',
           {
-            type: 'button',
             class: 'plain wide',
             title: root,
             onclick: () => this.go(root),
@@ -199,9 +192,6 @@ async function filesDialog(
       void},
 ): Promise<string|undefined> {
   const name = h('input', {
-    type: 'text',
-    spellcheck: 'false',
-    autocomplete: 'off',
     autofocus: true,
     'aria-label': 'File name',
     ...field,
@@ -276,7 +266,7 @@ export async function cloneDialog({store, request}: FileDialogPage) {
   });
   if (!path) return;
   const command = `ROS_MASTER_URI=http://localhost:11399 gazebo ${/^[\w./-]+$/.test(path) ? path : `'${path.replaceAll("'", "'\\''")}'`}`;
-  const line = h('textarea', {rows: 2, readonly: true, spellcheck: 'false', 'aria-label': 'Command'});
+  const line = h('textarea', {rows: 2, readonly: true, 'aria-label': 'Command'});
   line.value = command;
   const dialog = new Dialog({
     title: 'World Cloned',
@@ -351,8 +341,7 @@ function baseName(path: string|undefined) {
 
 /** Chooses a world file and opens it. */
 export async function openDialog({store, request}: FileDialogPage): Promise<string|undefined> {
-  const discard = await mayDiscard({store, request});
-  if (!discard) return undefined;
+  if (!await mayClose({store, request})) return undefined;
   return filesDialog(request, {
     title: 'Open World',
     button: 'Open',
@@ -370,17 +359,8 @@ export async function openDialog({store, request}: FileDialogPage): Promise<stri
  * Asks what becomes of unsaved changes.
  * @returns whether to go on
  */
-async function mayDiscard({store, request}: FileDialogPage): Promise<boolean> {
-  if (!store.history?.dirty) return true;
-  const choice = await ask('Save changes?', 'The world has unsaved changes.', [
-    {title: 'Cancel'},
-    {title: "Don't save", value: 'discard', danger: true},
-    {title: 'Save', value: 'save', primary: true},
-  ]);
-  if (choice === 'discard') return true;
-  if (choice !== 'save') return false;
-  return saveWorld({store, request});
-}
+const mayClose = async (page: FileDialogPage) => !page.store.history?.dirty ||
+  mayDiscard('Save changes?', 'The world has unsaved changes.', () => saveWorld(page));
 
 /** Saves to the world's own file, or asks for a name if it has no file that may be replaced. @returns whether it was saved */
 async function saveWorld(page: FileDialogPage) {
@@ -397,5 +377,5 @@ async function saveWorld(page: FileDialogPage) {
 
 /** An empty world in place of this one. */
 export async function newWorld(page: FileDialogPage) {
-  if (await mayDiscard(page)) await page.request('new', {discard: true});
+  if (await mayClose(page)) await page.request('new', {discard: true});
 }
