@@ -65,7 +65,12 @@ class ActionServer:
         kind: e.g. `control_msgs/FollowJointTrajectory`.
         asked: called with each new goal, which it must accept or reject.
         cancelled: called with each active goal that its client cancels.
+
+    Attributes:
+        current: the goal that `follow` accepted last, until it ends; None without one.
     """
+
+    current: Optional[Goal] = None
 
     def __init__(self, context: Context, name: str, kind: str, asked: Callable[[Goal], None],
                  cancelled: Callable[[Goal], None]) -> None:
@@ -89,6 +94,16 @@ class ActionServer:
     def result(self) -> Any:
         return self._context.message(f"{self._kind}Result")
 
+    def follow(self, goal: Goal) -> None:
+        """Accept a goal as the current one."""
+        self.current = goal
+        goal.accept()
+
+    def preempt(self, why: str, result: Optional[Callable[[], Any]] = None) -> None:
+        """Cancel the current goal, if there is one; `result` makes its result if given."""
+        if self.current is not None:
+            self.current.cancel((result or self.result)(), why)
+
     def close(self) -> None:
         """Remove the action from the ROS graph."""
         self._timer.end()
@@ -105,6 +120,8 @@ class ActionServer:
     def ended(self, goal: Goal, result: Any, text: str) -> None:
         """Publish the result and the status of a goal that ended."""
         goal.text, goal.ended_ns = text, self._context.now_ns
+        if goal is self.current:
+            self.current = None
         self._send_result(goal, result)
         self._publish_status()
 

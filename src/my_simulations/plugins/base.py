@@ -9,6 +9,7 @@ from __future__ import annotations
 import inspect
 from typing import Tuple
 
+from ..description.sensor import Sensor
 from .context import Context, PluginError
 from .parameters import Parameters
 
@@ -50,6 +51,13 @@ class Plugin:
         if not found:
             raise PluginError(f"it has no <{name}>")
         return found
+
+    def required_sensor(self, kind: str) -> Sensor:
+        """Return the sensor with the plugin. Raises PluginError, which names a kind."""
+        sensor = self.context.sensor
+        if sensor is None:
+            raise PluginError(f"it must be in a <sensor> of type {kind}")
+        return sensor
 
     def reset(self) -> None:
         """React to a reset: models are at their initial poses, at rest, and motors are off."""

@@ -1,21 +1,15 @@
 """Ignore command messages with NaN or infinity, which no motor can follow."""
 from __future__ import annotations
 
-from typing import Any, Callable, Protocol
+from typing import Any, Callable
 
 from ..description.model import INFINITE
+from .context import Context, Handle
 
 
-class WarningSink(Protocol):
-    """Reports warnings to the user."""
-
-    def warn(self, text: str) -> None:
-        """Report a warning."""
-
-
-def finite_only(context: WarningSink, topic: str, call: Callable[[Any], None]) -> Callable[[Any],
-                                                                                           None]:
-    """Return a subscriber that ignores messages with NaN or infinity, and else calls `call`.
+def subscribe_finite(context: Context, topic: str, kind: str, call: Callable[[Any], None],
+                     queue: int = 1) -> Handle:
+    """Subscribe to a topic (`Context.subscribe`), and ignore messages with NaN or infinity.
 
     The first ignored message is reported to the user.
     """
@@ -30,7 +24,7 @@ def finite_only(context: WarningSink, topic: str, call: Callable[[Any], None]) -
             context.warn(f"a message on {topic} contains NaN or infinity; such messages are"
                          " ignored")
 
-    return receive
+    return context.subscribe(topic, kind, receive, queue)
 
 
 def is_all_finite(value: Any) -> bool:

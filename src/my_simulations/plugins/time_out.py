@@ -1,4 +1,4 @@
-"""A time-out in sim time."""
+"""A time-out and a stopwatch in sim time."""
 from __future__ import annotations
 
 from .context import Context
@@ -36,3 +36,24 @@ class TimeOut:
     def is_over(self) -> bool:
         """Whether more than the duration has passed."""
         return self._context.now_ns > self.end_ns
+
+
+class Stopwatch:
+    """Measures the sim time between calls of `lap`.
+
+    Args:
+        context: provides the sim time.
+    """
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self.restart()
+
+    def restart(self) -> None:
+        """Measure from now."""
+        self._last_ns = self._context.now_ns
+
+    def lap(self) -> float:
+        """Return the time since the last call, or since `restart`, s; negative if time ran back."""
+        last_ns, self._last_ns = self._last_ns, self._context.now_ns
+        return (self._last_ns - last_ns) * 1e-9

@@ -65,7 +65,7 @@ def test_the_imu_of_a_nested_model_is_named_below_the_model_of_the_plugin(autopi
     context.scoped = lambda link: f"robot::drone::{link}"
     plugin = ArduPilot(context)
     plugin.load()
-    assert plugin._mount.position == (2.0, 0.0, 0.0)
+    assert plugin._imu._mount.position == (2.0, 0.0, 0.0)
     plugin.close()
 
 

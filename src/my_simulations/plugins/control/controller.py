@@ -5,7 +5,7 @@ from typing import Any, Callable, Dict, List, Sequence
 
 from ...engine.drive_commands import PidGains
 from ..context import CallHandle, Context, Handle, Publication
-from ..finite_messages import finite_only
+from ..finite_messages import subscribe_finite
 from .hardware import Hardware, HardwareJoint
 from .settings import Settings, offer_gains
 
@@ -73,9 +73,6 @@ class Controller:
 
         Messages with NaN or infinity are ignored, unless `call` itself checks its messages.
         """
-        if not checks:
-            call = finite_only(self.context, f"{self.name}/{topic}", call)
-
         def receive(message: Any) -> None:
             if self.state == RUNNING:
                 call(message)
@@ -84,7 +81,9 @@ class Controller:
                 self.context.warn(f"controller '{self.name}' is not running, and ignores messages"
                                   f" on {topic}")
 
-        self._handles.append(self.context.subscribe(f"{self.name}/{topic}", kind, receive))
+        name = f"{self.name}/{topic}"
+        self._handles.append(self.context.subscribe(name, kind, receive) if checks else
+                             subscribe_finite(self.context, name, kind, receive))
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> None:
         """Advertise a service below the controller's name."""

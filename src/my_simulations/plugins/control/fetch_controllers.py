@@ -120,7 +120,6 @@ class ActionController(FetchController):
 
     def begin_action(self) -> None:
         """Offer the action; call this in `load`."""
-        self.goal: Optional[Goal] = None
         self.watch = StepwiseChange(self.context, _LOOK_HZ, self._look)
         self.action = ActionServer(self.context, self.name, self.kind, self._start_goal,
                                    self._on_cancel)
@@ -139,32 +138,25 @@ class ActionController(FetchController):
 
     def stop(self) -> None:
         self.watch.end()
-        self._preempt("the controller was stopped")
+        self.action.preempt("the controller was stopped", self.result)
 
     def _start_goal(self, goal: Goal) -> None:
         self.on_goal(self)
-        self._preempt("another goal came")
-        goal.accept()
+        self.action.preempt("another goal came", self.result)
+        self.action.follow(goal)
         reason = self.follow(goal)
         if reason:
             goal.abort(self.result(), reason)
             return
-        self.goal = goal
         self.watch.begin()
 
     def _on_cancel(self, goal: Goal) -> None:
-        if self.goal is goal:
-            self._preempt("")
-
-    def _preempt(self, why: str) -> None:
-        if self.goal is not None:
-            goal, self.goal = self.goal, None
-            goal.cancel(self.result(), why)
+        if self.action.current is goal:
+            goal.cancel(self.result())
 
     def _look(self, dt: float) -> bool:
-        if self.goal is not None and self.state == RUNNING and self.check(self.goal):
-            self.goal = None
-        return self.goal is None
+        goal = self.action.current
+        return goal is None or self.state == RUNNING and self.check(goal)
 
 
 class ParallelGripper(ActionController):

@@ -30,7 +30,6 @@ class Gripper(Controller):
         self._default_effort = abs(s.number("max_effort", 0.0))
         self._still = s.number("stall_velocity_threshold", 0.001)
         self._stall = TimeOut(self.context, s.number("stall_timeout", 1.0))
-        self._goal: Optional[Goal] = None
         self._watch = StepwiseChange(self.context, self.update_hz(_LOOK_HZ), self._check_goal)
         self._wanted, self._most = 0.0, self._default_effort
         self._action = ActionServer(self.context, f"{self.name}/gripper_cmd",
@@ -57,22 +56,18 @@ class Gripper(Controller):
             goal.reject(self._result(False, False), "the position or the effort is no number")
             return
         self._preempt("another goal came")
-        goal.accept()
-        self._goal = goal
+        self._action.follow(goal)
         self._stall.begin()
         self._watch.begin()
         self._move_to(float(command.position), float(command.max_effort))
 
     def _on_cancel(self, goal: Goal) -> None:
-        if self._goal is goal:
-            self._goal = None
+        if self._action.current is goal:
             self._hold()
             goal.cancel(self._result(False, False))
 
     def _preempt(self, why: str) -> None:
-        if self._goal is not None:
-            goal, self._goal = self._goal, None
-            goal.cancel(self._result(False, False), why)
+        self._action.preempt(why, lambda: self._result(False, False))
 
     def _hold(self) -> None:
         self._move_to(self._joint.position, self._default_effort)
@@ -87,18 +82,16 @@ class Gripper(Controller):
 
     def _check_goal(self, dt: float) -> bool:
         """End a goal that is reached or holds something; return whether there is no goal left."""
-        goal = self._goal
-        if goal is None or not goal.active:
+        goal = self._action.current
+        if goal is None:
             return True
         if abs(self._wanted - self._joint.position) < self._tolerance:
-            self._goal = None
             goal.succeed(self._result(False, True))
         elif abs(self._joint.velocity) > self._still:
             self._stall.begin()
         elif self._stall.is_over:
-            self._goal = None
             goal.abort(self._result(True, False))
-        return self._goal is None
+        return not goal.active
 
     def _result(self, stalled: bool, reached: bool) -> Any:
         result = self._action.result()

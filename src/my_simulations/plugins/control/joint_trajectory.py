@@ -61,7 +61,7 @@ class JointTrajectory(Controller):
                      for name in self._names]
         self._late = s.number("constraints/goal_time", 0.0)
         self._splines: List[Spline] = []
-        self._goal: Optional[_Following] = None
+        self._followed: Optional[_Following] = None   # valid while the action has a goal
         self._watch = CallSlot()
         self._begun = 0.0
         self._seen: List[_Tracked] = []
@@ -84,7 +84,7 @@ class JointTrajectory(Controller):
 
     def stop(self) -> None:
         self._watch.end()
-        self._preempt("the controller was stopped")
+        self._action.preempt("the controller was stopped")
 
     # -- commands ----------------------------------------------------------------------------------
 
@@ -94,7 +94,7 @@ class JointTrajectory(Controller):
         except TrajectoryError as fault:
             self.context.warn(f"controller '{self.name}' ignores a trajectory: {fault}")
             return
-        self._preempt("another trajectory came")
+        self._action.preempt("another trajectory came")
 
     def _start_goal(self, goal: Goal) -> None:
         result = self._action.result()
@@ -109,28 +109,22 @@ class JointTrajectory(Controller):
             self.context.warn(f"controller '{self.name}' rejects a goal: {fault}")
             goal.reject(result, str(fault))
             return
-        self._preempt("another goal came")
+        self._action.preempt("another goal came")
         late = float(wanted.goal_time_tolerance.to_sec())
         followed = named if wanted.trajectory.points else []
-        self._goal = _Following(
+        self._followed = _Following(
             goal,
             _of_joints(followed,
                        update_tolerances(self._path, self._names, wanted.path_tolerance)),
             _of_joints(followed, update_tolerances(self._end, self._names, wanted.goal_tolerance)),
             self._late if late == 0.0 else max(0.0, late))
-        goal.accept()
+        self._action.follow(goal)
         self._check_goal()
 
     def _on_cancel(self, goal: Goal) -> None:
-        if self._goal is not None and self._goal.goal is goal:
-            self._goal = None
-            self._hold()
+        if self._action.current is goal:
             goal.cancel(self._action.result())
-
-    def _preempt(self, why: str) -> None:
-        if self._goal is not None:
-            goal, self._goal = self._goal.goal, None
-            goal.cancel(self._action.result(), why)
+            self._hold()
 
     def _take_over(self, message: Any) -> None:
         """Follow a trajectory message. Raises TrajectoryError; then nothing has changed."""
@@ -185,13 +179,13 @@ class JointTrajectory(Controller):
         return (self.context.step - spline.origin) * self.context.step_size
 
     def _moves(self) -> bool:
-        return self._goal is not None or any(
+        return self._action.current is not None or any(
             self._time(spline) <= spline.segments[-1].end for spline in self._splines)
 
     def _check_goal(self) -> None:
         """Check tolerances; when all is done, let the engine stop computing."""
-        following = self._goal
-        if following is not None:
+        following = self._followed
+        if following is not None and self._action.current is not None:
             self._judge(following, self._tracked())
             self._send_feedback(following)
         if not self._moves():
@@ -217,13 +211,11 @@ class JointTrajectory(Controller):
                            f"{self._names[n]} goal error {axis.error:.6f}")
                 return
         if len(following.arrived) == len(self._joints):
-            self._goal = None
             result = self._action.result()
             result.error_code = SUCCESSFUL
             following.goal.succeed(result)
 
     def _fail(self, following: "_Following", code: int, text: str) -> None:
-        self._goal = None
         result = self._action.result()
         result.error_code, result.error_string = code, text
         following.goal.abort(result, text)

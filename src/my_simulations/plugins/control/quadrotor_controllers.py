@@ -13,7 +13,7 @@ from ...engine.drive_commands import PidGains
 from ...engine.servo_law import Pid
 from ...geometry import Quat, Vec3, rpy_from_quat, subtract
 from ..context import PluginError
-from ..finite_messages import finite_only
+from ..finite_messages import subscribe_finite
 from ..frames import add_tf_prefix, resolve_frame
 from .controller import RUNNING, Controller
 from .quadrotor_hardware import (
@@ -52,9 +52,9 @@ class _QuadrotorController(Controller):
 
     def listen(self, topic: str, kind: str, call: Any) -> None:
         """Subscribe to a topic of the robot; a message counts while the controller runs."""
-        checked = finite_only(self.context, topic, call)
-        self.keep_handle(self.context.subscribe(
-            topic, kind, lambda message: checked(message) if self.state == RUNNING else None))
+        self.keep_handle(subscribe_finite(
+            self.context, topic, kind,
+            lambda message: call(message) if self.state == RUNNING else None))
 
     def stamp_of(self, message: Any) -> int:
         """Sim time of a message in ns; now if it has none."""

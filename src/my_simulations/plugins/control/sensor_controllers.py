@@ -7,17 +7,15 @@ frames instead.
 """
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, List, NamedTuple, Optional
+from typing import Callable, Dict, List, Optional, Tuple
 
 from ...description.model import Joint
 from ...description.sensor import ForceTorque, Sensor
 from ...sensing.sensor_models import (
-    acceleration_between,
-    measure_motion,
     measure_wrench,
-    velocity_at,
 )
-from ..context import Link, PluginError, Publication
+from ..context import PluginError, Publication
+from ..imu_meter import ImuMeter
 from ..standard_messages import imu_message, wrench_message
 from .controller import Controller
 from .settings import Settings
@@ -41,19 +39,12 @@ class _SensorController(Controller):
         return topic
 
 
-class _ImuTopic(NamedTuple):
-    sensor: Sensor
-    link: Link
-    frame: str
-    topic: Publication
-
-
 class ImuSensorController(_SensorController):
     """sensor_msgs/Imu of each `<sensor type="imu">`; the frame is that of its link."""
 
     def load(self) -> None:
         self._hertz = self.settings.number("publish_rate")
-        self._sensors: List[_ImuTopic] = []
+        self._sensors: List[Tuple[ImuMeter, str, Publication]] = []
         imus = {sensor.name: (link, sensor) for link, sensor in self.context.sensors()
                 if sensor.type == "imu"}
         named = self._named_sensors("imu", "gazebo_sensor_name")
@@ -64,31 +55,26 @@ class ImuSensorController(_SensorController):
                 raise PluginError(f"parameter imu/{topic}/gazebo_sensor_name: the robot has no"
                                   f" <sensor type=\"imu\" name=\"{name}\">")
             link, sensor = imus[name]
-            self._sensors.append(_ImuTopic(sensor, self.context.link(link), frame or link,
-                                           self._offer(topic, "sensor_msgs/Imu")))
+            meter = ImuMeter(self.context, self.context.link(link), sensor.pose)
+            self._sensors.append((meter, frame or link, self._offer(topic, "sensor_msgs/Imu")))
         if not self._sensors:
             raise PluginError(f"controller '{self.name}': the robot has no <sensor type=\"imu\">")
 
     def start(self) -> None:
-        self._before: Dict[str, Any] = {}
+        self._restart()
         if self._hertz > 0.0:
-            self.observe(self._hertz, self._publish_all, [one.topic for one in self._sensors],
-                         resume=self._resume)
+            self.observe(self._hertz, self._publish_all, [topic for _, _, topic in self._sensors],
+                         resume=self._restart)
 
-    def _resume(self) -> None:
-        self._before = {}
-        self._publish_all()
+    def _restart(self) -> None:
+        for meter, _, _ in self._sensors:
+            meter.restart()
 
     def _publish_all(self) -> None:
-        for sensor, link, frame, topic in self._sensors:
-            now_ns, now = self.context.now_ns, velocity_at(link.pose, link.twist, sensor.pose)
-            then_ns, then = self._before.get(sensor.name, (now_ns, now))
-            self._before[sensor.name] = (now_ns, now)
-            if not topic.wanted or then_ns == now_ns:
-                continue
-            sample = measure_motion(link.pose, link.twist, acceleration_between(
-                then, now, (now_ns - then_ns) * 1e-9), self.context.gravity, sensor.pose)
-            topic.publish(imu_message(self.context, frame, *sample))
+        for meter, frame, topic in self._sensors:
+            sample = meter.measure()
+            if topic.wanted:
+                topic.publish(imu_message(self.context, frame, *sample))
 
 
 class ForceTorqueSensorController(_SensorController):

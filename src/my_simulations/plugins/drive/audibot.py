@@ -14,7 +14,7 @@ from ...geometry import conjugate, rotate
 from ...geometry_messages import fill_pose
 from ..base import Plugin
 from ..context import Joint
-from ..finite_messages import finite_only
+from ..finite_messages import subscribe_finite
 from ..frames import stamp_message
 from ..time_out import TimeOut
 from .wheels import apply_torque
@@ -47,9 +47,9 @@ class Audibot(Plugin):
         self._footprint = context.link("base_footprint")
         self._frame = f"{name}/base_footprint" if name else "base_footprint"
         self._throttle_time, self._brake_time = (TimeOut(context, _PATIENCE) for _ in range(2))
-        self._subscribe("steering_cmd", self._receive_steering)
-        self._subscribe("throttle_cmd", self._receive_throttle)
-        self._subscribe("brake_cmd", self._receive_brake)
+        subscribe_finite(context, "steering_cmd", "std_msgs/Float64", self._receive_steering)
+        subscribe_finite(context, "throttle_cmd", "std_msgs/Float64", self._receive_throttle)
+        subscribe_finite(context, "brake_cmd", "std_msgs/Float64", self._receive_brake)
         context.subscribe("gear_cmd", "std_msgs/UInt8", self._receive_gear)
         self._twist = context.publish("twist", "geometry_msgs/TwistStamped")
         self._gear_state = context.publish("gear_state", "std_msgs/UInt8")
@@ -69,9 +69,6 @@ class Audibot(Plugin):
 
     def _joints(self, name: str) -> List[Joint]:
         return [self.context.joint(name.format(side)) for side in "lr"]
-
-    def _subscribe(self, topic: str, call: Any) -> None:
-        self.context.subscribe(topic, "std_msgs/Float64", finite_only(self.context, topic, call))
 
     def _receive_steering(self, message: Any) -> None:
         """`data` is the angle of the steering wheel, rad."""

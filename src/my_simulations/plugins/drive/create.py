@@ -13,6 +13,7 @@ from typing import Dict, List, Optional
 
 from ...geometry import inverse, transform
 from ..context import Context, Joint, PluginError
+from ..time_out import Stopwatch
 from .floor_rays import FloorRays, sensor_named
 from .odometry import Odometer, WheelCounter
 from .velocity_drive import VelocityDrive
@@ -52,7 +53,7 @@ class Create(VelocityDrive):
             self._sensors = CreateSensors(context, left.parent, hertz)
         except PluginError as missing:
             context.warn(f"no bumper, cliff and wall sensors: {missing}")
-        self._last_ns = context.now_ns
+        self._stopwatch = Stopwatch(context)
         self.reset()
         context.observe(hertz, self._publish, [*self._odometer.topics, *self._states.topics],
                         remembers=True)
@@ -71,7 +72,7 @@ class Create(VelocityDrive):
     def clock_set(self) -> None:
         """Count from the present time on."""
         super().clock_set()
-        self._last_ns = self.context.now_ns
+        self._stopwatch.restart()
         if self._sensors is not None:
             self._sensors.clock_set()
 
@@ -80,9 +81,7 @@ class Create(VelocityDrive):
             wheel.drive(speed / self._radius, self._torque)
 
     def _publish(self) -> None:
-        now = self.context.now_ns
-        velocity = self._counter.count((now - self._last_ns) * 1e-9)
-        self._last_ns = now
+        velocity = self._counter.count(self._stopwatch.lap())
         self._odometer.publish(self._counter.pose, velocity)
         self._states.send()
 

@@ -10,10 +10,11 @@ import math
 from typing import Any, Dict, List, Tuple
 
 from ...geometry import compose, rpy_from_quat, scale
-from ...sensing.sensor_models import acceleration_between, measure_motion, velocity_at
 from ..context import PluginError, Publication
 from ..frames import add_tf_prefix, stamp_message
+from ..imu_meter import ImuMeter
 from ..standard_messages import diagonal_covariance, imu_message
+from ..time_out import Stopwatch
 from .floor_rays import FloorRays, sensor_named
 from .odometry import Odometer, WheelRotations, planar_pose
 from .velocity_drive import VelocityDrive
@@ -39,9 +40,12 @@ class Kobuki(VelocityDrive):
         self._separation = self.required_number("wheel_separation")
         self._radius = self.required_number("wheel_diameter") / 2.0
         self._torque = self.required_number("torque")
-        self._imu_link, self._imu = sensor_named(context, self.required_text("imu_name"))
+        link, sensor = sensor_named(context, self.required_text("imu_name"))
+        self._imu_link = context.link(link)
         # Gazebo's ImuSensor reports orientations relative to the one at loading.
-        self._reference = compose(context.link(self._imu_link).pose, self._imu.pose).orientation
+        self._imu = ImuMeter(context, self._imu_link, sensor.pose, compose(
+            self._imu_link.pose, sensor.pose).orientation)
+        self._stopwatch = Stopwatch(context)
         self._odometer = Odometer(context, "odom", "odom", "base_footprint", _COVARIANCE)
         self._broadcasts = p.flag("publish_tf", False)
         self._states = WheelStates(context, self._wheels, motion=True,
@@ -80,29 +84,24 @@ class Kobuki(VelocityDrive):
     def clock_set(self) -> None:
         """Compute accelerations from the present time and velocity on."""
         super().clock_set()
-        self._last_ns, self._before = self.context.now_ns, self._imu_velocity()
+        self._stopwatch.restart()
+        self._imu.restart()
         self._events.clock_set()
 
     def _begin_count(self) -> None:
         self._place = (0.0, 0.0, 0.0)
 
     def _yaw(self) -> float:
-        return rpy_from_quat(self.context.link(self._imu_link).pose.orientation)[2]
-
-    def _imu_velocity(self) -> Tuple[float, float, float]:
-        link = self.context.link(self._imu_link)
-        return velocity_at(link.pose, link.twist, self._imu.pose)
+        return rpy_from_quat(self._imu_link.pose.orientation)[2]
 
     def publish(self) -> None:
         """Publish joint states, odometry and IMU, as they are before the command of an update."""
-        now = self.context.now_ns
-        dt = (now - self._last_ns) * 1e-9
-        self._last_ns = now
+        dt = self._stopwatch.lap()
         if dt <= 0.0:
             return
         self._states.send()
         self._publish_odometry(dt)
-        self._publish_imu(dt)
+        self._publish_imu()
 
     def _publish_odometry(self, dt: float) -> None:
         """Publish odometry; the heading is that of the gyroscope, as on the real base."""
@@ -117,14 +116,10 @@ class Kobuki(VelocityDrive):
             self._odometer.transform(pose)
         self._odometer.publish(pose, (way / dt, 0.0, turn / dt))
 
-    def _publish_imu(self, dt: float) -> None:
-        before, self._before = self._before, self._imu_velocity()
+    def _publish_imu(self) -> None:
+        context, sample = self.context, self._imu.measure()
         if not self._imu_topic.wanted:
             return
-        context, link = self.context, self.context.link(self._imu_link)
-        acceleration = acceleration_between(before, self._before, dt)
-        sample = measure_motion(link.pose, link.twist, acceleration, context.gravity,
-                                self._imu.pose, self._reference)
         message = imu_message(context, add_tf_prefix(context, "base_link"), *sample)
         message.orientation_covariance = diagonal_covariance((1e6, 1e6, 0.05))
         message.angular_velocity_covariance = list(message.orientation_covariance)

@@ -17,7 +17,7 @@ from ...engine.wrench_laws import BodyDrag
 from ...geometry import ZERO3, add, norm, scale
 from ..base import Plugin
 from ..context import Joint
-from ..finite_messages import finite_only
+from ..finite_messages import subscribe_finite
 from ..time_out import TimeOut
 from .wheels import apply_torque
 
@@ -55,7 +55,7 @@ class PriusHybrid(Plugin):
         drag = p.number("chassis_aero_force_gain", 1.0)
         self._law = BodyDrag((drag,) * 3, ZERO3, ZERO3, math.inf)
         self._time_out = TimeOut(context, _PATIENCE)
-        context.subscribe("prius", _KIND, finite_only(context, "prius", self._receive), queue=10)
+        subscribe_finite(context, "prius", _KIND, self._receive, queue=10)
         self.reset()
         context.every(_HERTZ, self._drive)
 

@@ -7,6 +7,7 @@ from ...geometry import Pose
 from ..base import Plugin
 from ..context import Joint, Publication
 from ..stepwise_change import StepwiseChange
+from ..time_out import Stopwatch
 from .odometry import DRIVE_COVARIANCE, NO_COVARIANCE, Odometer, WheelCounter, heading_velocity
 from .wheels import VelocityCommand, WheelFrames, WheelStates
 
@@ -108,13 +109,8 @@ class OdometryDrive(VelocityDrive):
     def clock_set(self) -> None:
         """Measure time from now; keep the odometry pose."""
         super().clock_set()
-        self._last_ns = self.context.now_ns
+        self._stopwatch = Stopwatch(self.context)
         self._counter.discard_rotation()
-
-    def elapsed(self) -> float:
-        """Sim time since the last call, or since `clock_set`, s."""
-        before, self._last_ns = self._last_ns, self.context.now_ns
-        return (self._last_ns - before) * 1e-9
 
     def motion(self) -> Tuple[Pose, Tuple[float, float, float]]:
         """Return the pose and the (forward, sideways, yaw) velocity to publish.
@@ -122,6 +118,6 @@ class OdometryDrive(VelocityDrive):
         The velocity of encoders is the mean since the last call.
         """
         if self._encoder:
-            velocity = self._counter.count(self.elapsed())
+            velocity = self._counter.count(self._stopwatch.lap())
             return self._counter.pose, velocity
         return self.context.pose, heading_velocity(self.context.pose, self.context.twist)

@@ -7,7 +7,7 @@ from typing import Any, Callable, List, Optional, Sequence, Tuple
 from ...geometry import compose, inverse
 from ..call_slot import CallSlot
 from ..context import Context, Joint, Publication
-from ..finite_messages import finite_only
+from ..finite_messages import subscribe_finite
 from ..frames import add_tf_prefix
 from ..standard_messages import joint_state_message
 from ..stepwise_change import StepwiseChange
@@ -34,7 +34,7 @@ class VelocityCommand:
         self._time_out = TimeOut(context, timeout) if timeout is not None else None
         self._expiry = CallSlot()
         self.stop()
-        context.subscribe(topic, "geometry_msgs/Twist", finite_only(context, topic, self._receive))
+        subscribe_finite(context, topic, "geometry_msgs/Twist", self._receive)
 
     def stop(self) -> None:
         self.x = self.y = self.yaw = 0.0

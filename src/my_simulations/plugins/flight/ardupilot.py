@@ -17,11 +17,11 @@ from dataclasses import replace
 from typing import List, NamedTuple, Optional
 
 from ...engine.drive_commands import JointServo, PidGains
-from ...geometry import IDENTITY, Pose, Vec3, compose, conjugate, inverse, quat_from_rpy, rotate
-from ...sensing.sensor_models import acceleration_between, measure_motion, velocity_at
+from ...geometry import Pose, compose, conjugate, inverse, quat_from_rpy, rotate
 from ..base import Plugin
 from ..call_slot import CallSlot
 from ..context import Joint, PluginError
+from ..imu_meter import ImuMeter
 from ..parameters import Parameters
 
 _LOOK_HZ = 50.0
@@ -107,7 +107,7 @@ class ArduPilot(Plugin):
              if name in (imu[1].name, own) or name.endswith(f"::{own}")), None)
         if found is None:
             raise PluginError(f"the model has no sensor of type imu named '{name}'")
-        self._imu, self._mount = self.context.link(found[0]), found[1].pose
+        self._imu = ImuMeter(self.context, self.context.link(found[0]), found[1].pose)
 
     def _scope_sensor(self, name: str) -> str:
         """The name of a sensor of the plugin's nested model in the outermost model; "" for none."""
@@ -147,8 +147,7 @@ class ArduPilot(Plugin):
         """Follow ArduPilot from its first packet on."""
         floats = self._receive_packet(0.0)
         if floats is not None:
-            self._last_ns = self.context.now_ns
-            self._before = self._velocity()
+            self._imu.restart()
             self._timer.set(self.context.every(0.0, self._step))
             self._follow(floats)
 
@@ -207,16 +206,8 @@ class ArduPilot(Plugin):
         else:
             self.context.set_joint_positions({channel.joint.name: value})
 
-    def _velocity(self) -> Vec3:
-        return velocity_at(self._imu.pose, self._imu.twist, self._mount)
-
     def _state(self) -> bytes:
-        context, now = self.context, self._velocity()
-        elapsed = (context.now_ns - self._last_ns) * 1e-9
-        sample = measure_motion(self._imu.pose, self._imu.twist,
-                                acceleration_between(self._before, now, elapsed), context.gravity,
-                                self._mount, IDENTITY.orientation)
-        self._before, self._last_ns = now, context.now_ns
+        context, sample = self.context, self._imu.measure()
         pose = compose(inverse(self._to_ned), compose(context.pose, self._to_airplane))
         x, y, z, w = pose.orientation
         velocity = rotate(conjugate(self._to_ned.orientation), context.twist.linear)

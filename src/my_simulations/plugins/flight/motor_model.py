@@ -15,7 +15,7 @@ from ...engine.wrench_laws import Rotor
 from ...geometry import ZERO3, Vec3
 from ..base import Plugin
 from ..context import PluginError
-from ..finite_messages import finite_only
+from ..finite_messages import subscribe_finite
 
 ACTUATORS = "mav_msgs/Actuators"
 _MOTOR_EFFORT = 1e3   # N m: the motor follows its speed in one step
@@ -47,7 +47,7 @@ class MotorModel(Plugin):
         self._down_time = p.positive("timeConstantDown", 1.0 / 40.0)
         self._slowdown = p.positive("rotorVelocitySlowdownSim", 10.0)
         command = p.text("commandSubTopic", "command/motor_speed")
-        context.subscribe(command, ACTUATORS, finite_only(context, command, self._receive))
+        subscribe_finite(context, command, ACTUATORS, self._receive)
         self._offer_wind(p.text("windSpeedSubTopic", "wind_speed"))
         self._offer_states()
         self._commanded = False
@@ -55,8 +55,7 @@ class MotorModel(Plugin):
     def _offer_wind(self, topic: str) -> None:
         self._wind: Vec3 = ZERO3
         try:
-            self.context.subscribe(topic, "rotors_comm/WindSpeed",
-                                   finite_only(self.context, topic, self._receive_wind))
+            subscribe_finite(self.context, topic, "rotors_comm/WindSpeed", self._receive_wind)
         except PluginError as missing:
             self.context.info(f"no wind by a topic: {missing}")
 

@@ -18,9 +18,10 @@ from ...geometry import Vec3, is_number
 from ..base import Plugin
 from ..call_slot import CallSlot
 from ..context import Context, PluginError
-from ..finite_messages import finite_only
+from ..finite_messages import subscribe_finite
 from ..frames import stamp_message
 from ..standard_messages import wrench_message
+from ..time_out import Stopwatch
 from .body_wrench import body_twist, push_at_origin
 
 _PWM_STEPS = 255
@@ -116,7 +117,7 @@ class QuadrotorPropulsion(Plugin):
                 (p.text("voltageTopicName") or p.text("pwmTopicName", "motor_pwm"), "MotorPWM",
                  self._receive_pwm)):
             if name:
-                context.subscribe(name, f"hector_uav_msgs/{kind}", finite_only(context, name, read))
+                subscribe_finite(context, name, f"hector_uav_msgs/{kind}", read)
         self._frame = p.text("frameId", self._link.name)
         self._trigger = context.publish(p.text("triggerTopic", "quadro/trigger"),
                                         "rosgraph_msgs/Clock", 10)
@@ -145,7 +146,7 @@ class QuadrotorPropulsion(Plugin):
         """Commands of another time are lost."""
         self._queue: Deque[Tuple[int, List[float]]] = deque()
         self._last_command_ns = self.context.now_ns
-        self._last_ns = self.context.now_ns
+        self._stopwatch = Stopwatch(self.context)
         self._next_status_ns = 0
 
     # -- commands --------------------------------------------------------------------------------
@@ -167,7 +168,7 @@ class QuadrotorPropulsion(Plugin):
         self._on = True
         self._last_command_ns = self.context.now_ns
         if not self._timer.is_active:
-            self._last_ns = self.context.now_ns
+            self._stopwatch.restart()
             self._timer.set(self.context.every(0.0, self.update))
 
     def _apply_commands(self) -> None:
@@ -181,8 +182,7 @@ class QuadrotorPropulsion(Plugin):
     # -- motors ----------------------------------------------------------------------------------
 
     def update(self) -> None:
-        dt = (self.context.now_ns - self._last_ns) * 1e-9
-        self._last_ns = self.context.now_ns
+        dt = self._stopwatch.lap()
         self._apply_commands()
         velocity, spin = (clamped_vector(one, MOST_VELOCITY) for one in body_twist(self._link))
         arm = self._constants.l_m
@@ -244,8 +244,7 @@ class QuadrotorAerodynamics(Plugin):
         self._wind: Optional[Vec3] = None
         topic = p.text("windTopicName", "/wind")
         if topic:
-            context.subscribe(topic, "geometry_msgs/Vector3",
-                              finite_only(context, topic, self._receive))
+            subscribe_finite(context, topic, "geometry_msgs/Vector3", self._receive)
         self._frame = p.text("frameId", self._link.name)
         self._wrenches = context.publish(p.text("wrenchTopic", "aerodynamics/wrench"),
                                          "geometry_msgs/WrenchStamped", 10)

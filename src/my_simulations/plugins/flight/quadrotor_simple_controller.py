@@ -25,8 +25,9 @@ from ...geometry import (
 from ...geometry_messages import fill_wrench
 from ..base import Plugin
 from ..call_slot import CallSlot
-from ..finite_messages import finite_only
+from ..finite_messages import subscribe_finite
 from ..sensors.hector_errors import rate_of
+from ..time_out import Stopwatch
 from .body_wrench import NO_WRENCH, hold_wrench
 from .filtered_pid import FilteredPid
 
@@ -49,8 +50,7 @@ class QuadrotorSimpleController(Plugin):
         self._hertz = rate_of(p)
         command = self._topic("velocity_topic", p.text("topicName", "cmd_vel"))
         if command:
-            context.subscribe(command, "geometry_msgs/Twist",
-                              finite_only(context, command, self._receive))
+            subscribe_finite(context, command, "geometry_msgs/Twist", self._receive)
         for name in ("imuTopic", "stateTopic"):
             if p.text(name):
                 context.warn(f"<{name}> is ignored; the controller uses the true state")
@@ -75,7 +75,7 @@ class QuadrotorSimpleController(Plugin):
         self._apply()
 
     def clock_set(self) -> None:
-        self._last_ns = self.context.now_ns
+        self._stopwatch = Stopwatch(self.context)
 
     def _receive(self, message: Any) -> None:
         self._command = (message.linear.x, message.linear.y, message.linear.z)
@@ -100,11 +100,10 @@ class QuadrotorSimpleController(Plugin):
             self._publish()
 
     def update(self) -> None:
-        elapsed_ns = self.context.now_ns - self._last_ns
-        if elapsed_ns <= 0:
+        elapsed = self._stopwatch.lap()
+        if elapsed <= 0.0:
             return
-        self._last_ns = self.context.now_ns
-        self._control(elapsed_ns * 1e-9)
+        self._control(elapsed)
         if self._has_landed():
             self._shut_down()
             return

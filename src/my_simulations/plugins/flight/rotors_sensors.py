@@ -18,8 +18,8 @@ from ...sensing import gps
 from ...sensing.noise import GAUSSIAN, sample_generator
 from ...sensing.sensor_models import velocity_at
 from ..base import Plugin
-from ..context import PluginError
 from ..frames import stamp_message
+from ..imu_meter import ImuMeter
 from ..noise import WhiteNoise
 from ..sensors.imu import Imu
 from ..sensors.noisy_plugin import NoisyPlugin
@@ -43,7 +43,8 @@ class RotorsImu(Imu):
 
     def load(self) -> None:
         context, p = self.enter_namespace()
-        self._link = context.link(self.required_text("linkName"))
+        link = context.link(self.required_text("linkName"))
+        self._frame, self._meter = link.name, ImuMeter(context, link)
         gyroscope = (p.number("gyroscopeNoiseDensity", 2.0 * 35.0 / 3600.0 * _DEGREE),
                      p.number("gyroscopeTurnOnBiasSigma", 0.5 * _DEGREE),
                      p.number("gyroscopeBiasRandomWalk", 2.0 * 4.0 / 3600.0 * _DEGREE),
@@ -52,14 +53,12 @@ class RotorsImu(Imu):
                          p.number("accelerometerTurnOnBiasSigma", 20.0e-3 * 9.8),
                          p.number("accelerometerRandomWalk", 2.0 * 3.0e-3),
                          p.number("accelerometerBiasCorrelationTime", 300.0))
-        who = self._link.name
-        self._errors = [self.add_noise(self._spec(*values), f"{who}/{kind}/{axis}")
+        self._errors = [self.add_noise(self._spec(*values), f"{link.name}/{kind}/{axis}")
                         for kind, values in (("rate", gyroscope), ("acceleration", accelerometer))
                         for axis in "xyz"]
         self._variances = [diagonal_covariance([values[0] ** 2] * 3)
                            for values in (gyroscope, accelerometer)]
         self._topic = context.publish(p.text("imuTopic", "imu"), "sensor_msgs/Imu")
-        self.begin_motion()
         self.follow(0.0)
 
     def _spec(self, density: float, turn_on: float, walk: float, time: float) -> NoiseSpec:
@@ -69,10 +68,10 @@ class RotorsImu(Imu):
                          dynamic_bias_correlation_time=time)
 
     def update(self) -> None:
-        context, sample = self.context, self.measured()
+        context, sample = self.context, self._meter.measure()
         values = [errors.apply(value, context.now_ns) for errors, value in zip(
             self._errors, (*sample.angular_velocity, *sample.linear_acceleration))]
-        message = imu_message(context, self._link.name, sample.orientation, values[:3], values[3:])
+        message = imu_message(context, self._frame, sample.orientation, values[:3], values[3:])
         message.orientation_covariance = [-1.0] * 9
         message.angular_velocity_covariance = list(self._variances[0])
         message.linear_acceleration_covariance = list(self._variances[1])
@@ -142,11 +141,10 @@ class RotorsGps(NoisyPlugin):
 
     def load(self) -> None:
         context, p = self.enter_namespace()
-        if context.sensor is None:
-            raise PluginError("it must be in a <sensor> of type gps")
-        self._link, self._mount = context.link(context.sensor_link), context.sensor.pose
+        sensor = self.required_sensor("gps")
+        self._link, self._mount = context.link(context.sensor_link), sensor.pose
         self._frame = p.text("linkName", self._link.name)
-        block = context.sensor.gps or GpsBlock()
+        block = sensor.gps or GpsBlock()
         self._place = [self.add_noise(noise, f"position/{axis}") for axis, noise in (
             ("x", block.position_horizontal), ("y", block.position_horizontal),
             ("z", block.position_vertical))]
@@ -157,7 +155,7 @@ class RotorsGps(NoisyPlugin):
         self._fix = context.publish(p.text("gpsTopic", "gps"), "sensor_msgs/NavSatFix")
         self._speed = context.publish(p.text("groundSpeedTopic", "ground_speed"),
                                       "geometry_msgs/TwistStamped")
-        context.observe(context.sensor.update_rate, self.update, [self._fix, self._speed])
+        context.observe(sensor.update_rate, self.update, [self._fix, self._speed])
 
     def update(self) -> None:
         context, link, ns = self.context, self._link, self.context.now_ns

@@ -15,7 +15,7 @@ from ...geometry import ZERO3, Vec3, conjugate, norm, rotate, rpy_from_quat, sca
 from ...geometry_messages import fill_pose, fill_vector
 from ..base import Plugin
 from ..call_slot import CallSlot
-from ..finite_messages import finite_only
+from ..finite_messages import subscribe_finite
 from .body_wrench import NO_WRENCH, hold_wrench
 from .filtered_pid import FilteredPid
 from .quadrotor_simple_controller import load_factor, to_heading
@@ -51,8 +51,7 @@ class SjtuDrone(Plugin):
         self._velocities = context.publish(f"{place}gt_vel", "geometry_msgs/Twist", 10)
         self._accelerations = context.publish(f"{place}gt_acc", "geometry_msgs/Twist", 10)
         command = "cmd_vel" if own else "/cmd_vel"
-        context.subscribe(command, "geometry_msgs/Twist",
-                          finite_only(context, command, self._receive))
+        subscribe_finite(context, command, "geometry_msgs/Twist", self._receive)
         context.subscribe(f"{place}takeoff", "std_msgs/Empty", lambda message: self._take_off())
         context.subscribe(f"{place}land", "std_msgs/Empty", lambda message: self._land())
         context.subscribe(f"{place}posctrl", "std_msgs/Bool", self._choose_positions)

@@ -29,8 +29,9 @@ from ...geometry import (
 from ..base import Plugin
 from ..call_slot import CallSlot
 from ..context import PluginError
-from ..finite_messages import finite_only
+from ..finite_messages import subscribe_finite
 from ..parameters import Parameters
+from ..time_out import Stopwatch
 
 _OMEGA = 2.0 * math.pi * 10.0   # rad/s of the straps
 
@@ -85,8 +86,7 @@ class Harness(Plugin):
         self._mass = sum(link.inertial.mass for link in context.description.links)
         self._inertia = self._about_the_link()
         above = f"/{context.model}/harness"
-        context.subscribe(f"{above}/velocity", "std_msgs/Float32",
-                          finite_only(context, f"{above}/velocity", self._receive_rate))
+        subscribe_finite(context, f"{above}/velocity", "std_msgs/Float32", self._receive_rate)
         context.subscribe(f"{above}/detach", "std_msgs/Bool", self._receive_detach)
         self._timer = CallSlot()   # while it hangs
         self.reset()
@@ -125,13 +125,13 @@ class Harness(Plugin):
         self._anchor: Pose = self._link.pose
         self._axis: Vec3 = rotate(self._anchor.orientation, self._axis_in_link)
         self._rate = self._place = 0.0
-        self._last_ns = self.context.now_ns
+        self.clock_set()
         self._position_pid.reset()
         self._rate_pid.reset()
 
     def clock_set(self) -> None:
         """Measure the time between updates from now."""
-        self._last_ns = self.context.now_ns
+        self._stopwatch = Stopwatch(self.context)
 
     def _receive_rate(self, message: Any) -> None:
         self._rate = float(message.data)
@@ -150,8 +150,7 @@ class Harness(Plugin):
         return dot(self._axis, subtract(self._link.pose.position, self._anchor.position))
 
     def update(self) -> None:
-        dt = (self.context.now_ns - self._last_ns) * 1e-9
-        self._last_ns = self.context.now_ns
+        dt = self._stopwatch.lap()
         if not self._hangs or dt <= 0.0:
             return
         pose, twist = self._link.pose, self._link.twist

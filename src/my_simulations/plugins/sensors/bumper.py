@@ -17,7 +17,6 @@ from ...description.model import Model
 from ...geometry import ZERO3, Vec3, add, conjugate, cross, rotate, scale, subtract
 from ...geometry_messages import fill_vector, fill_wrench
 from ..base import Plugin
-from ..context import PluginError
 from ..frames import add_tf_prefix, stamp_message
 from ..standard_messages import wrench_message
 
@@ -27,15 +26,14 @@ class Bumper(Plugin):
 
     def load(self) -> None:
         context, p = self.enter_namespace()
-        if context.sensor is None:
-            raise PluginError("it must be in a <sensor> of type contact")
+        sensor = self.required_sensor("contact")
         self._frame = add_tf_prefix(context, p.text("frameName", "world"))
         self._link = context.link(context.sensor_link)
-        block = context.sensor.contact
+        block = sensor.contact
         self._collision = block.collisions[0] if block is not None and block.collisions else ""
         self._topic = context.publish(p.text("bumperTopicName", "bumper_states"),
                                       "gazebo_msgs/ContactsState")
-        context.observe(context.sensor.update_rate, self.update, [self._topic], contacts=True)
+        context.observe(sensor.update_rate, self.update, [self._topic], contacts=True)
 
     def update(self) -> None:
         """Publish the contacts of the last step."""
@@ -101,12 +99,11 @@ class FootContact(Plugin):
 
     def load(self) -> None:
         context = self.context
-        if context.sensor is None:
-            raise PluginError("it must be in a <sensor> of type contact")
+        sensor = self.required_sensor("contact")
         self._link = context.link(context.sensor_link)
-        self._topic = context.publish(f"/visual/{context.sensor.name}/the_force",
+        self._topic = context.publish(f"/visual/{sensor.name}/the_force",
                                       "geometry_msgs/WrenchStamped", 100)
-        context.observe(context.sensor.update_rate, self.update, [self._topic], contacts=True)
+        context.observe(sensor.update_rate, self.update, [self._topic], contacts=True)
 
     def update(self) -> None:
         """Publish the mean contact force of the last step."""

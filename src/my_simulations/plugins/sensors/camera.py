@@ -11,7 +11,7 @@ from typing import Any, Callable, List, Type
 from ..base import Plugin
 from ..context import Context
 from .camera_parameters import ImagerRate, topics_of
-from .picture_stream import PictureStream, blocks_of
+from .picture_stream import PictureStream, camera_sensor
 
 _TRIGGERS = 100
 
@@ -27,8 +27,8 @@ class Camera(Plugin):
 
     def load(self) -> None:
         context, p = self.enter_namespace(empty_means_model=True)
-        block, sensor = blocks_of(context, "camera")[0], context.sensor
-        assert sensor is not None
+        sensor = camera_sensor(context, "camera")
+        block = sensor.cameras[0]
         self._stream = self.stream_type(context, sensor, context.sensor_link, block,
                                         topics_of(context), p.number("hackBaseline", 0.0),
                                         p.flag("borderCrop", True))
@@ -138,10 +138,9 @@ class MultiCamera(Plugin):
 
     def load(self) -> None:
         context, p = self.enter_namespace(empty_means_model=True)
-        blocks, sensor = blocks_of(context, "multicamera"), context.sensor
-        assert sensor is not None
+        sensor = camera_sensor(context, "multicamera")
         self._streams = []
-        for block in blocks:
+        for block in sensor.cameras:
             side = next((word for word in ("left", "right") if word in block.name), "")
             baseline = p.number("hackBaseline", 0.0) if side == "right" else 0.0
             self._streams.append(PictureStream(

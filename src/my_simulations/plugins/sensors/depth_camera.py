@@ -22,7 +22,7 @@ from .image_messages import (
     header,
     make_image,
 )
-from .picture_stream import PictureStream, blocks_of
+from .picture_stream import PictureStream, camera_sensor
 
 _FAR = float("inf")
 _MILLIMETRES = 1000.0
@@ -113,8 +113,8 @@ class DepthCamera(Plugin):
 
     def load(self) -> None:
         context, p = self.enter_namespace(empty_means_model=True)
-        block, sensor = blocks_of(context, "depth")[0], context.sensor
-        assert sensor is not None
+        sensor = camera_sensor(context, "depth")
+        block = sensor.cameras[0]
         topics = topics_of(context)
         self._colors = PictureStream(context, sensor, context.sensor_link, block, topics,
                                      p.number("hackBaseline", 0.0), p.flag("borderCrop", True))

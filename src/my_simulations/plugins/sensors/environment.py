@@ -14,7 +14,7 @@ from ...description.surroundings import SphericalCoordinates
 from ...geometry import transform
 from ...sensing import gps
 from ...sensing.sensor_models import measure_altitude, measure_magnetic_field, velocity_at
-from ..context import PluginError, Publication
+from ..context import Publication
 from ..frames import add_tf_prefix
 from ..standard_messages import fix_message, magnetic_message, point_message, vector_message
 from .noisy_plugin import NoisyPlugin
@@ -27,17 +27,14 @@ class _SensorPlugin(NoisyPlugin):
 
     def _begin(self, kind: str) -> None:
         context, p = self.enter_namespace(self.context.model)
-        if context.sensor is None:
-            raise PluginError(f"it must be in a <sensor> of type {kind}")
-        self._link, self._mount = context.link(context.sensor_link), context.sensor.pose
+        self._sensor = self.required_sensor(kind)
+        self._link, self._mount = context.link(context.sensor_link), self._sensor.pose
         self._frame = add_tf_prefix(context, p.text("frameName") or context.sensor_link)
-        self.block = getattr(context.sensor, kind)
+        self.block = getattr(self._sensor, kind)
 
     def _follow(self, *topics: Publication) -> None:
         """Measure at the sensor's rate while there are subscribers."""
-        context = self.context
-        assert context.sensor is not None
-        context.observe(context.sensor.update_rate, self.update, topics)
+        self.context.observe(self._sensor.update_rate, self.update, topics)
 
     def update(self) -> None:
         raise NotImplementedError

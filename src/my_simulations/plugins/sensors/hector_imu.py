@@ -9,6 +9,7 @@ import math
 from typing import Any, Iterable
 
 from ...geometry import IDENTITY_QUAT, Pose, Quat, Vec3, multiply, normalised, rotate
+from ..imu_meter import ImuMeter
 from ..standard_messages import diagonal_covariance, imu_message
 from .hector_errors import SensorErrors, rate_of
 from .imu import Imu
@@ -19,9 +20,9 @@ class HectorImu(Imu):
 
     def load(self) -> None:
         context, p = self.enter_namespace()
-        self._link = context.link(p.text("bodyName"))
-        self._mount = Pose(orientation=p.turn("rpyOffset"))
-        self._frame = (p.text("frameId") or self._link.name).lstrip("/")
+        link = context.link(p.text("bodyName"))
+        self._meter = ImuMeter(context, link, Pose(orientation=p.turn("rpyOffset")))
+        self._frame = (p.text("frameId") or link.name).lstrip("/")
         topic = p.text("topicName") or "imu"
         self._accel, self._rate = SensorErrors(context, "accel"), SensorErrors(context, "rate")
         self._yaw = SensorErrors(context, "yaw", 1)
@@ -34,13 +35,12 @@ class HectorImu(Imu):
                                      "sensor_msgs/Imu", 10)
         context.serve(p.text("serviceName") or f"{topic}/calibrate", "std_srvs/Empty",
                       lambda request, response: self._rate.reset(context.now_ns, (0.0,) * 3))
-        self.begin_motion()
         context.observe(rate_of(p), self.update, [self._topic, self._bias],
-                        resume=self.begin_motion)
+                        resume=self._meter.restart)
 
     def update(self) -> None:
         """Measure, and publish on the topics that have a subscriber."""
-        ns, sample = self.context.now_ns, self.measured()
+        ns, sample = self.context.now_ns, self._meter.measure()
         accel = self._accel.apply(sample.linear_acceleration, ns)
         rate = self._rate.apply(sample.angular_velocity, ns)
         (yaw,) = self._yaw.apply((0.0,), ns)

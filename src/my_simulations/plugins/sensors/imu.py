@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import Any, Optional
 
 from ...description.sensor import Imu as ImuBlock
-from ...geometry import IDENTITY, IDENTITY_QUAT, Pose, Quat, Vec3, compose, multiply
-from ...sensing.sensor_models import ImuSample, acceleration_between, measure_motion, velocity_at
-from ..context import Link, PluginError
+from ...geometry import IDENTITY_QUAT, Pose, Quat, compose, multiply
+from ...sensing.sensor_models import ImuSample
+from ..imu_meter import ImuMeter
 from ..noise import WhiteNoise
 from ..parameters import lowest_rate
 from ..standard_messages import diagonal_covariance, imu_message
@@ -21,11 +21,8 @@ from .noisy_plugin import NoisyPlugin
 class Imu(NoisyPlugin):
     """What both have: a link, a place on it, and the velocity at the sample before."""
 
-    _link: Link
-    _mount: Pose = IDENTITY
+    _meter: ImuMeter
     _offset: Quat = IDENTITY_QUAT
-    _reference: Quat = IDENTITY_QUAT
-    _before: Vec3
 
     def _begin(self, topic: str, frame: str, who: str) -> None:
         context, p = self.context, self.context.parameters
@@ -33,17 +30,11 @@ class Imu(NoisyPlugin):
         self._white = WhiteNoise(context.seed, f"{context.model}::{who}::imu", self._stddev)
         self._topic = context.publish(topic, "sensor_msgs/Imu")
         self._offset = p.turn("rpyOffset")
-        self.begin_motion()
-
-    def begin_motion(self) -> None:
-        """Measure accelerations from the present time and velocity on."""
-        self._last_ns = self.context.now_ns
-        self._before = self._velocity()
 
     def reset(self) -> None:
         """Restart noises; measure accelerations from the present time and velocity on."""
         super().reset()
-        self.begin_motion()
+        self._meter.restart()
 
     def follow(self, hertz: float) -> None:
         """Measure at a rate while there are subscribers.
@@ -51,22 +42,10 @@ class Imu(NoisyPlugin):
         The first sample after a time without subscribers is left out: the velocity before it is too
         old for an acceleration.
         """
-        self.context.observe(hertz, self.update, [self._topic], resume=self.begin_motion)
-
-    def _velocity(self) -> Vec3:
-        return velocity_at(self._link.pose, self._link.twist, self._mount)
-
-    def measured(self) -> ImuSample:
-        """What it reads at this step, without errors."""
-        context, now = self.context, self._velocity()
-        elapsed = (context.now_ns - self._last_ns) * 1e-9
-        acceleration = acceleration_between(self._before, now, elapsed)
-        self._before, self._last_ns = now, context.now_ns
-        return measure_motion(self._link.pose, self._link.twist, acceleration, context.gravity,
-                              self._mount, self._reference)
+        self.context.observe(hertz, self.update, [self._topic], resume=self._meter.restart)
 
     def update(self) -> None:
-        sample = self._noisy(self.measured())
+        sample = self._noisy(self._meter.measure())
         context, noise = self.context, self._white.draw(6, self.context.now_ns)
         message = imu_message(
             context, self._frame, multiply(self._offset, sample.orientation),
@@ -88,8 +67,7 @@ class ModelImu(Imu):
     def load(self) -> None:
         context, p = self.enter_namespace()
         body = self.required_text("bodyName")
-        self._link = context.link(body)
-        self._mount = Pose(p.vector("xyzOffset"))
+        self._meter = ImuMeter(context, context.link(body), Pose(p.vector("xyzOffset")))
         self._begin(p.text("topicName", "/default_imu"), p.text("frameName", body), body)
         context.serve(p.text("serviceName", "/default_imu"), "std_srvs/Empty",
                       lambda request, response: None)
@@ -104,25 +82,25 @@ class SensorImu(Imu):
 
     def load(self) -> None:
         context, p = self.context, self.context.parameters
-        if context.sensor is None:
-            raise PluginError("it must be in a <sensor> of type imu")
+        sensor = self.required_sensor("imu")
         # An empty element, such as xacro leaves, is the root (GazeboRosImuSensor::LoadParameters).
         context.use_namespace(p.text("robotNamespace", f"/{context.model}") or "/")
         frame = self.required_text("frameName")
-        self._link, self._mount = context.link(context.sensor_link), context.sensor.pose
-        if p.flag("initialOrientationAsReference", False):
-            self._reference = compose(self._link.pose, self._mount).orientation
-        self._block: Optional[ImuBlock] = context.sensor.imu
+        link, mount = context.link(context.sensor_link), sensor.pose
+        relative = p.flag("initialOrientationAsReference", False)
+        self._meter = ImuMeter(context, link, mount, compose(
+            link.pose, mount).orientation if relative else IDENTITY_QUAT)
+        self._block: Optional[ImuBlock] = sensor.imu
         self._axes = [self.add_noise(getattr(getattr(self._block, kind), axis), f"{kind}/{axis}")
                       for kind in ("angular_velocity", "linear_acceleration") for axis in "xyz"
                       ] if self._block is not None else []
-        self._begin(p.text("topicName", "imu_data"), frame, context.sensor.name)
-        sensor_hertz = context.sensor.update_rate
+        self._begin(p.text("topicName", "imu_data"), frame, sensor.name)
+        sensor_hertz = sensor.update_rate
         hertz = lowest_rate(p.number("updateRateHZ", 1.0), sensor_hertz)
         period = 1.0 / sensor_hertz if sensor_hertz > 0.0 else context.step_size
         self.follow(hertz)
         if 0.0 < hertz * period < 1.0 - 1e-9:
-            context.observe(hertz, self.begin_motion, [self._topic], lead=period)
+            context.observe(hertz, self._meter.restart, [self._topic], lead=period)
 
     def _noisy(self, sample: ImuSample) -> ImuSample:
         if not self._axes:

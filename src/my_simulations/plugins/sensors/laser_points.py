@@ -38,8 +38,7 @@ class Points(RayPlugin):
         self._frame = self._resolve_frame(p.text("frameName", "/world"))
         self._topic = context.publish(p.text("topicName") or self.usual_topic, self.message_type)
         self._directions: Optional[Any] = None
-        assert context.sensor is not None
-        self.follow(context.sensor.update_rate)
+        self.follow(self._sensor.update_rate)
 
     def _resolve_frame(self, frame: str) -> str:
         return add_tf_prefix(self.context, frame)
@@ -157,8 +156,7 @@ class Laser(RayPlugin):
         self._frame = add_tf_prefix(context, p.text("frameName", "/world"))
         self._noise = self.add_noise(self._ray.noise, "range")
         self._topic = context.publish(p.text("topicName", "/world"), "sensor_msgs/LaserScan")
-        assert context.sensor is not None
-        self.follow(context.sensor.update_rate)
+        self.follow(self._sensor.update_rate)
 
     def _publish(self, returns: Any, ns: int) -> None:
         import numpy as np

@@ -22,11 +22,11 @@ from .image_messages import (
 _QUALITY = 80  # of jpeg, as compressed_image_transport
 
 
-def blocks_of(context: Context, kinds: str) -> List[CameraBlock]:
-    """The cameras of the plugin's sensor. Raises PluginError where there is none."""
+def camera_sensor(context: Context, kinds: str) -> Sensor:
+    """Return the plugin's sensor. Raises PluginError if it has no camera."""
     if context.sensor is None or not context.sensor.cameras:
         raise PluginError(f"it must be in a <sensor> of type {kinds} with a <camera>")
-    return context.sensor.cameras
+    return context.sensor
 
 
 def place_of(sensor: Sensor, block: CameraBlock) -> Pose:

@@ -22,12 +22,11 @@ class Range(RayPlugin):
         self._frame = add_tf_prefix(context, p.text("frameName", "/world"))
         self._kind = ULTRASOUND if p.text("radiation", "ultrasound") == "ultrasound" else INFRARED
         self._view = p.number("fov", 0.05)
-        assert context.sensor is not None
         self._noise = WhiteNoise(context.seed, f"{context.model}::{context.sensor_link}::"
-                                 f"{context.sensor.name}::range",
+                                 f"{self._sensor.name}::range",
                                  p.number("gaussianNoise", 0.0))
         self._topic = context.publish(p.text("topicName", "/range"), "sensor_msgs/Range")
-        self.follow(lowest_rate(p.number("updateRate", 0.0), context.sensor.update_rate))
+        self.follow(lowest_rate(p.number("updateRate", 0.0), self._sensor.update_rate))
 
     def _publish(self, returns: Any, ns: int) -> None:
         most = self._ray.max_range

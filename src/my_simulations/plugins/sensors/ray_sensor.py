@@ -48,8 +48,7 @@ class RangeOutput(RayPlugin):
         self._frame = p.text("frameName", "/world").lstrip("/")
         self._kind = INFRARED if p.text("radiationType") in ("infrared", "infared") else ULTRASOUND
         self._topic = context.publish(p.text("topicName", "/world"), "sensor_msgs/Range")
-        assert context.sensor is not None
-        self.follow(context.sensor.update_rate)
+        self.follow(self._sensor.update_rate)
 
     def _publish(self, returns: Any, ns: int) -> None:
         ray = self._ray

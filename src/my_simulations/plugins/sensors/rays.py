@@ -5,7 +5,7 @@ from typing import Tuple
 
 from ...description.sensor import Ray, ScanAngles
 from ...sensing.api import RayFan, RayReturns
-from ..context import Context, PluginError, Publication
+from ..context import PluginError, Publication
 from .noisy_plugin import NoisyPlugin
 
 _NO_END = 1e6  # m: a sensor without a maximum range
@@ -27,14 +27,6 @@ def fan_of(ray: Ray, visuals: bool = False) -> RayFan:
     return RayFan(*spread(ray.horizontal), *spread(ray.vertical), max(0.0, ray.min_range), far)
 
 
-def ray_of(context: Context) -> Tuple[Ray, bool]:
-    """Return the sensor's `<ray>`, and whether its rays hit visuals. Raises PluginError."""
-    sensor = context.sensor
-    if sensor is None or sensor.ray is None:
-        raise PluginError("it must be in a <sensor> of type ray or gpu_ray with a <ray>")
-    return sensor.ray, sensor.type in ("gpu_ray", "gpu_lidar")
-
-
 class RayPlugin(NoisyPlugin):
     """Base class of plugins in a `<ray>` sensor: they cast rays while there are subscribers."""
 
@@ -42,7 +34,11 @@ class RayPlugin(NoisyPlugin):
 
     def read_ray_element(self) -> None:
         """Read the `<ray>` of the sensor. Raises PluginError."""
-        self._ray, self._visuals = ray_of(self.context)
+        kind = "ray or gpu_ray with a <ray>"
+        self._sensor = self.required_sensor(kind)
+        if self._sensor.ray is None:
+            raise PluginError(f"it must be in a <sensor> of type {kind}")
+        self._ray, self._visuals = self._sensor.ray, self._sensor.type in ("gpu_ray", "gpu_lidar")
         self._fan = fan_of(self._ray, self._visuals)
 
     def follow(self, hertz: float) -> None:

@@ -14,7 +14,7 @@ from ..base import Plugin
 from ..context import View
 from .camera_parameters import Calibration, rate_of, spec_of, topics_of
 from .image_messages import header, make_image
-from .picture_stream import blocks_of, place_of
+from .picture_stream import camera_sensor, place_of
 
 
 class SegmentationCamera(Plugin):
@@ -22,8 +22,8 @@ class SegmentationCamera(Plugin):
 
     def load(self) -> None:
         context, p = self.enter_namespace(empty_means_model=True)
-        block, sensor = blocks_of(context, "camera")[0], context.sensor
-        assert sensor is not None
+        sensor = camera_sensor(context, "camera")
+        block = sensor.cameras[0]
         self._topics = topics = topics_of(context)
         spec = spec_of(context, block, p.flag("borderCrop", True))
         self._calibration = Calibration(context, block, spec, 0.0)

@@ -5,7 +5,7 @@ from typing import Any
 
 from ...geometry import ZERO3, Vec3
 from ..base import Plugin
-from ..finite_messages import finite_only
+from ..finite_messages import subscribe_finite
 
 
 class Force(Plugin):
@@ -17,7 +17,7 @@ class Force(Plugin):
         self._body = context.link(p.text("bodyName")).name
         self._force: Vec3 = ZERO3
         self._torque: Vec3 = ZERO3
-        context.subscribe(topic, "geometry_msgs/Wrench", finite_only(context, topic, self._receive))
+        subscribe_finite(context, topic, "geometry_msgs/Wrench", self._receive)
 
     def reset(self) -> None:
         """Keep the wrench after a reset, as in Gazebo."""

@@ -13,7 +13,7 @@ from ...engine.drive_commands import JointServo, PidGains
 from ...geometry import IDENTITY_QUAT, Quat, Vec3, conjugate, multiply, normalised, rpy_from_quat
 from ..base import Plugin
 from ..context import PluginError
-from ..finite_messages import finite_only
+from ..finite_messages import subscribe_finite
 from ..standard_messages import joint_state_message
 from ..transforms import Transforms
 
@@ -40,8 +40,7 @@ class HectorServo(Plugin):
                                  most_effort=_or_unlimited(torque))
         topic = p.text("topicName", "drive")
         if topic:
-            context.subscribe(topic, "geometry_msgs/QuaternionStamped",
-                              finite_only(context, topic, self._receive))
+            subscribe_finite(context, topic, "geometry_msgs/QuaternionStamped", self._receive)
         self._transforms = Transforms(context, self._follow)
         states = p.text("jointStateName", "joint_states")
         if states:

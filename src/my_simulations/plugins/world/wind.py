@@ -14,9 +14,10 @@ from ...description.model import Link, Model
 from ...geometry import Vec3, scale, subtract
 from ..base import Plugin
 from ..context import PluginError
-from ..finite_messages import finite_only
+from ..finite_messages import subscribe_finite
 from ..noise import WhiteNoise
 from ..parameters import Parameters
+from ..time_out import Stopwatch
 
 _LEAST_FACTOR = 1e-6   # 1/s, as in Gazebo
 _HERTZ = 100.0
@@ -43,8 +44,7 @@ class Wind(Plugin):
         self._magnitude = self._lag(_child(across, "magnitude"), "amplitude_percent", "magnitude")
         self._direction = self._lag(_child(across, "direction"), "amplitude", "direction")
         self._vertical = self._lag(p.children("vertical")[:1], "", "vertical")
-        context.subscribe("/gazebo/wind", "geometry_msgs/Vector3",
-                          finite_only(context, "/gazebo/wind", self._receive))
+        subscribe_finite(context, "/gazebo/wind", "geometry_msgs/Vector3", self._receive)
         self._given: Optional[Vec3] = None
         self._pushed: List[str] = []
         self.reset()
@@ -67,7 +67,7 @@ class Wind(Plugin):
 
     def clock_set(self) -> None:
         """Keep the wind, as in Gazebo; measure the lag from now."""
-        self._last_ns = self.context.now_ns
+        self._stopwatch = Stopwatch(self.context)
 
     def _receive(self, message: Any) -> None:
         self._given = (float(message.x), float(message.y), float(message.z))
@@ -94,10 +94,8 @@ class Wind(Plugin):
 
     def velocity(self) -> Vec3:
         """Of the wind now, m/s, world axes."""
-        context = self.context
-        elapsed = (context.now_ns - self._last_ns) * 1e-9
-        self._last_ns = context.now_ns
-        x, y, z = self._given or context.wind
+        elapsed = self._stopwatch.lap()
+        x, y, z = self._given or self.context.wind
         wanted = (math.hypot(x, y), math.degrees(math.atan2(y, x)), z)
         lags = (self._magnitude, self._direction, self._vertical)
         self._means = [value + (mean - value) * math.exp(-elapsed / lag.time) if lag.time else value
