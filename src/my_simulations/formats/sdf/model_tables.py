@@ -1,7 +1,7 @@
 """The elements of SDF 1.7 that are simulated, as tables. Source: SDF specification, 1.2 to 1.7."""
 from __future__ import annotations
 
-from typing import Dict, Mapping
+from typing import Mapping
 
 from ...description.light import Light
 from ...description.model import Inertial, Joint, JointAxis, Link, Model
@@ -27,7 +27,18 @@ from ...description.shapes import (
 )
 from ...description.world import Physics, World
 from ..xml.source import FaultLevel
-from ..xml.tables import Entry, Group, Kept, Nested, Part, Table, Use, Value
+from ..xml.tables import (
+    Entry,
+    Group,
+    Kept,
+    Nested,
+    Part,
+    Table,
+    Use,
+    Value,
+    kept,
+    values_named,
+)
 from ..xml.values import (
     BOOL,
     COLOR,
@@ -49,29 +60,17 @@ FATAL, ERROR, WARNING = FaultLevel.FATAL, FaultLevel.ERROR, FaultLevel.WARNING
 PLUGINS, SHOWN, KEPT = Use.PLUGINS, Use.SHOWN, Use.KEPT
 
 
-def _kept(*names: str, since: str = "") -> Dict[str, Entry]:
-    return {name: Kept(since) for name in names}
-
-
-def _kept_with_note(*names: str, since: str = "") -> Dict[str, Entry]:
-    """Elements that are kept with a note, because their authors expect an effect."""
-    return {name: Kept(since, reported=True) for name in names}
-
-
 TERRAIN_TEXTURE = Table("texture", TerrainTexture, {
     "diffuse": Value("diffuse", TEXT), "normal": Value("normal", TEXT),
     "size": Value("size", FLOAT),
 }, level=WARNING, use=SHOWN)
-TERRAIN_BLEND = Table("blend", TerrainBlend, {
-    "min_height": Value("min_height", FLOAT), "fade_dist": Value("fade_dist", FLOAT),
-}, level=WARNING, use=SHOWN)
+TERRAIN_BLEND = Table("blend", TerrainBlend, values_named(FLOAT, "min_height", "fade_dist"),
+                      level=WARNING, use=SHOWN)
 
 GEOMETRIES: Mapping[str, Table] = {
     "box": Table("box", Box, {"size": Value("size", VECTOR3)}),
     "sphere": Table("sphere", Sphere, {"radius": Value("radius", FLOAT)}),
-    "cylinder": Table("cylinder", Cylinder, {
-        "radius": Value("radius", FLOAT), "length": Value("length", FLOAT),
-    }),
+    "cylinder": Table("cylinder", Cylinder, values_named(FLOAT, "radius", "length")),
     "plane": Table("plane", Plane, {
         "normal": Value("normal", VECTOR3), "size": Value("size", PLANE_SIZE),
     }),
@@ -82,13 +81,9 @@ GEOMETRIES: Mapping[str, Table] = {
         "submesh": Group({"name": Value("submesh", TEXT), "center": Value("center", BOOL)}),
         "convex_decomposition": Kept("1.11"),
     }),
-    "capsule": Table("capsule", Capsule, {
-        "radius": Value("radius", FLOAT), "length": Value("length", FLOAT),
-    }),
+    "capsule": Table("capsule", Capsule, values_named(FLOAT, "radius", "length")),
     "ellipsoid": Table("ellipsoid", Ellipsoid, {"radii": Value("radii", VECTOR3)}),
-    "cone": Table("cone", Cone, {
-        "radius": Value("radius", FLOAT), "length": Value("length", FLOAT),
-    }),
+    "cone": Table("cone", Cone, values_named(FLOAT, "radius", "length")),
     "heightmap": Table("heightmap", Heightmap, {
         "uri": Value("uri", TEXT),
         "filename": Value("uri", TEXT),  # SDF 1.0 to 1.2
@@ -99,7 +94,7 @@ GEOMETRIES: Mapping[str, Table] = {
         "texture": Nested("textures", TERRAIN_TEXTURE, required=("diffuse", "normal", "size"),
                           use=SHOWN),
         "blend": Nested("blends", TERRAIN_BLEND, required=("min_height", "fade_dist"), use=SHOWN),
-        **_kept("use_terrain_paging"),
+        **kept("use_terrain_paging"),
     }),
     "image": Table("image", ImageMap, {
         "uri": Value("uri", TEXT),
@@ -120,29 +115,29 @@ _ODE_FRICTION = Group({
     "slip1": Value("slip1", FLOAT), "slip2": Value("slip2", FLOAT),
 })
 _ODE_CONTACT = Group({
-    **{name: Value(name, FLOAT) for name in ("kp", "kd", "max_vel")},
+    **values_named(FLOAT, "kp", "kd", "max_vel"),
     "min_depth": Value("min_depth", FLOAT, use=KEPT),
-    **_kept("soft_cfm", "soft_erp"),
+    **kept("soft_cfm", "soft_erp"),
 })
 _TORSIONAL = Group({
     "coefficient": Value("torsion", FLOAT), "patch_radius": Value("patch_radius", FLOAT),
     "use_patch_radius": Value("use_patch_radius", BOOL),
-    "surface_radius": Value("surface_radius", FLOAT, use=KEPT), **_kept("ode"),
+    "surface_radius": Value("surface_radius", FLOAT, use=KEPT), **kept("ode"),
 })
 SURFACE_CHILDREN: Mapping[str, Entry] = {
     "bounce": Group({
         "restitution_coefficient": Value("restitution", FLOAT),
         "threshold": Value("bounce_threshold", FLOAT),
     }),
-    "friction": Group({"ode": _ODE_FRICTION, "torsional": _TORSIONAL, **_kept("bullet")}),
+    "friction": Group({"ode": _ODE_FRICTION, "torsional": _TORSIONAL, **kept("bullet")}),
     "contact": Group({
         "ode": _ODE_CONTACT,
         "collide_without_contact": Value("collide_without_contact", BOOL),
         "collide_bitmask": Value("collide_bitmask", INT),
-        **_kept("bullet", "collide_without_contact_bitmask", "category_bitmask", "poissons_ratio",
+        **kept("bullet", "collide_without_contact_bitmask", "category_bitmask", "poissons_ratio",
                 "elastic_modulus"),
     }),
-    **_kept("soft_contact"),
+    **kept("soft_contact"),
 }
 SURFACE = Table("surface", Surface, SURFACE_CHILDREN)
 
@@ -152,7 +147,7 @@ COLLISION = Table("collision", Collision, {
     "surface": Group(SURFACE_CHILDREN, part="surface"),
     "max_contacts": Value("max_contacts", INT, use=KEPT),
     "laser_retro": Value("laser_retro", FLOAT, use=PLUGINS),
-    **_kept("frame", "density", "mass"),
+    **kept("frame", "density", "mass"),
 }, known_attributes=("name",))
 
 VISUAL = Table("visual", Visual, {
@@ -163,26 +158,23 @@ VISUAL = Table("visual", Visual, {
     "transparency": Value("transparency", FLOAT),
     "laser_retro": Value("laser_retro", FLOAT, use=PLUGINS),
     "meta": Group({"layer": Value("layer", INT)}),
-    **_kept("frame", "visibility_flags"), **_kept_with_note("plugin"),
+    **kept("frame", "visibility_flags"), **kept("plugin", reported=True),
 }, level=WARNING, known_attributes=("name",), use=SHOWN)
 
 MATERIAL = Table("material", Material, {
-    "ambient": Value("ambient", COLOR), "diffuse": Value("diffuse", COLOR),
-    "specular": Value("specular", COLOR), "emissive": Value("emissive", COLOR),
+    **values_named(COLOR, "ambient", "diffuse", "specular", "emissive"),
     "script": Group({
         "uri": Value("script_uris", TEXT, repeated=True), "name": Value("script_name", TEXT),
     }),
     "double_sided": Value("double_sided", BOOL),
-    **_kept("shader", "lighting", "shininess", "pbr", "render_order"),
+    **kept("shader", "lighting", "shininess", "pbr", "render_order"),
 }, level=WARNING, use=SHOWN)
 
 INERTIAL = Table("inertial", Inertial, {
     "mass": Value("mass", FLOAT),
     "pose": Value("pose", POSE),
-    "inertia": Group({
-        name: Value(name, FLOAT) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-    }),
-    **_kept("frame", "density", "fluid_added_mass"),
+    "inertia": Group(values_named(FLOAT, "ixx", "ixy", "ixz", "iyy", "iyz", "izz")),
+    **kept("frame", "density", "fluid_added_mass"),
 }, level=FATAL, known_attributes=("auto",))
 
 LINK = Table("link", Link, {
@@ -190,32 +182,26 @@ LINK = Table("link", Link, {
     "inertial": Part(),
     "collision": Part(),
     "visual": Part(),
-    "gravity": Value("gravity", BOOL),
-    "kinematic": Value("kinematic", BOOL),
-    "self_collide": Value("self_collide", BOOL),
+    **values_named(BOOL, "gravity", "kinematic", "self_collide"),
     "velocity_decay": Group({
         "linear": Value("linear_decay", FLOAT), "angular": Value("angular_decay", FLOAT),
     }),
-    **_kept("frame", "light", "must_be_base_link"), "enable_wind": Kept(use=PLUGINS),
+    **kept("frame", "light", "must_be_base_link"), "enable_wind": Kept(use=PLUGINS),
     "sensor": Part(use=PLUGINS, kept=True),
-    **_kept_with_note("projector", "audio_source", "audio_sink", "battery", "particle_emitter",
-                      "plugin"),
+    **kept("projector", "audio_source", "audio_sink", "battery", "particle_emitter",
+                      "plugin", reported=True),
 }, known_attributes=("name",))
 
 _AXIS_CHILDREN: Mapping[str, Entry] = {
     "xyz": Part(),
     "limit": Group({
-        "lower": Value("lower", LIMIT), "upper": Value("upper", LIMIT),
-        "effort": Value("effort", LIMIT), "velocity": Value("velocity", LIMIT),
-        **_kept("stiffness", "dissipation"),
+        **values_named(LIMIT, "lower", "upper", "effort", "velocity"),
+        **kept("stiffness", "dissipation"),
     }),
-    "dynamics": Group({
-        "damping": Value("damping", FLOAT), "friction": Value("friction", FLOAT),
-        "spring_reference": Value("spring_reference", FLOAT),
-        "spring_stiffness": Value("spring_stiffness", FLOAT),
-    }),
+    "dynamics": Group(values_named(
+        FLOAT, "damping", "friction", "spring_reference", "spring_stiffness")),
     "mimic": Part("1.11"),
-    **_kept("initial_position"),
+    **kept("initial_position"),
 }
 AXIS = Table("axis", JointAxis, _AXIS_CHILDREN, level=FATAL)
 AXIS2 = Table("axis2", JointAxis, _AXIS_CHILDREN, level=FATAL)
@@ -230,7 +216,7 @@ JOINT = Table("joint", Joint, {
     "gearbox_ratio": Value("gearbox_ratio", FLOAT),
     "gearbox_reference_body": Value("gearbox_reference", TEXT),
     "sensor": Part(use=PLUGINS, kept=True),
-    **_kept("frame", "physics"),
+    **kept("frame", "physics"),
 }, known_attributes=("name", "type"))
 
 FRAME = Table("frame", Link, {"pose": Value("pose", POSE, FATAL)},
@@ -238,19 +224,16 @@ FRAME = Table("frame", Link, {"pose": Value("pose", POSE, FATAL)},
 
 MODEL = Table("model", Model, {
     "pose": Value("pose", POSE, FATAL),
-    "static": Value("static", BOOL),
-    "self_collide": Value("self_collide", BOOL),
-    "allow_auto_disable": Value("allow_auto_disable", BOOL),
+    **values_named(BOOL, "static", "self_collide", "allow_auto_disable"),
     "link": Part(), "joint": Part(), "model": Part("1.5"), "include": Part("1.4"),
     "frame": Part("1.5", kept=True), "plugin": Part(use=PLUGINS),
     "enable_wind": Value("enable_wind", BOOL, use=PLUGINS),
-    **_kept_with_note("gripper"),
+    **kept("gripper", reported=True),
 }, attributes={"canonical_link": Value("canonical_link", TEXT, since="1.7")},
    known_attributes=("name", "placement_frame"))
 
 INCLUDE = Table("include", Model, {
-    "uri": Value("uri", TEXT),
-    "name": Value("name", TEXT),
+    **values_named(TEXT, "uri", "name"),
     "pose": Value("pose", POSE, FATAL),
     "static": Value("static", BOOL),
     "plugin": Part(use=PLUGINS),
@@ -261,15 +244,10 @@ LIGHT = Table("light", Light, {
     "pose": Value("pose", POSE),
     "cast_shadows": Value("cast_shadows", BOOL),
     "diffuse": Value("diffuse", COLOR), "specular": Value("specular", COLOR),
-    "attenuation": Group({
-        name: Value(name, FLOAT) for name in ("range", "constant", "linear", "quadratic")
-    }),
+    "attenuation": Group(values_named(FLOAT, "range", "constant", "linear", "quadratic")),
     "direction": Value("direction", VECTOR3),
-    "spot": Group({
-        "inner_angle": Value("inner_angle", FLOAT), "outer_angle": Value("outer_angle", FLOAT),
-        "falloff": Value("falloff", FLOAT),
-    }),
-    **_kept("frame", "intensity", "light_on", "visualize"), **_kept_with_note("plugin"),
+    "spot": Group(values_named(FLOAT, "inner_angle", "outer_angle", "falloff")),
+    **kept("frame", "intensity", "light_on", "visualize"), **kept("plugin", reported=True),
 }, attributes={"type": Value("type", TEXT)}, level=WARNING, known_attributes=("name",), use=SHOWN)
 
 PHYSICS = Table("physics", Physics, {
@@ -283,17 +261,15 @@ PHYSICS = Table("physics", Physics, {
             "precon_iters": Value("precon_iters", INT, use=KEPT),
             "sor": Value("sor", FLOAT, use=KEPT),
             "friction_model": Value("friction_model", TEXT),
-            **_kept("type", "min_step_size", "island_threads", "thread_position_correction",
+            **kept("type", "min_step_size", "island_threads", "thread_position_correction",
                     "use_dynamic_moi_rescaling"),
         }),
-        "constraints": Group({
-            **{name: Value(name, FLOAT, use=KEPT) for name in (
-                "cfm", "erp", "contact_max_correcting_vel", "contact_surface_layer")},
-        }),
+        "constraints": Group(values_named(FLOAT, "cfm", "erp", "contact_max_correcting_vel",
+                                          "contact_surface_layer", use=KEPT)),
         "max_contacts": Value("max_contacts", INT, use=KEPT),
-        **_kept("provide_feedback"),
+        **kept("provide_feedback"),
     }, part="ode"),
-    **_kept("bullet", "simbody", "dart"),
+    **kept("bullet", "simbody", "dart"),
 }, attributes={"name": Value("name", TEXT, use=KEPT), "type": Value("type", TEXT, use=KEPT)},
    known_attributes=("default",))
 
@@ -305,5 +281,5 @@ WORLD = Table("world", World, {
     "state": Part(), "joint": Part("1.10"),
     "magnetic_field": Value("magnetic_field", VECTOR3, since="1.6", use=PLUGINS),
     **SURROUNDINGS,
-    **_kept_with_note("audio"),
+    **kept("audio", reported=True),
 }, known_attributes=("name",))

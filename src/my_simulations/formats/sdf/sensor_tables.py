@@ -1,7 +1,7 @@
 """Tables of SDF sensors. Source: SDF specification 1.7, sensor."""
 from __future__ import annotations
 
-from typing import Dict, Mapping
+from typing import Mapping
 
 from ...description.sensor import (
     AirPressure,
@@ -19,7 +19,7 @@ from ...description.sensor import (
     Transceiver,
 )
 from ..xml.source import FaultLevel
-from ..xml.tables import Entry, Group, Kept, Part, Table, Use, Value
+from ..xml.tables import Entry, Group, Part, Table, Use, Value, kept, values_named
 from ..xml.values import BOOL, FLOAT, INT, LIMIT, POSE, TEXT, VECTOR2, VECTOR3
 
 _WARNING, _KEPT = FaultLevel.WARNING, Use.KEPT
@@ -27,14 +27,9 @@ _UNUSED = ("sonar", "air_pressure", "logical_camera", "transceiver")
 """Sensor blocks that no plugin reads."""
 
 
-def _kept(*names: str) -> Dict[str, Entry]:
-    return {name: Kept() for name in names}
-
-
 def _noise(part: str) -> Group:
-    numbers: Dict[str, Entry] = {name: Value(name, FLOAT) for name in (
-        "mean", "stddev", "bias_mean", "bias_stddev", "dynamic_bias_stddev",
-        "dynamic_bias_correlation_time", "precision")}
+    numbers = values_named(FLOAT, "mean", "stddev", "bias_mean", "bias_stddev",
+                           "dynamic_bias_stddev", "dynamic_bias_correlation_time", "precision")
     # SDF up to 1.4 has the type as an element.
     return Group({**numbers, "type": Value("type", TEXT)}, {"type": Value("type", TEXT)}, part=part)
 
@@ -55,8 +50,8 @@ def _table(name: str, of: type, children: Mapping[str, Entry], **more: object) -
 
 def _scan(part: str) -> Group:
     return Group({
-        "samples": Value("samples", INT), "resolution": Value("resolution", FLOAT),
-        "min_angle": Value("min_angle", FLOAT), "max_angle": Value("max_angle", FLOAT),
+        "samples": Value("samples", INT),
+        **values_named(FLOAT, "resolution", "min_angle", "max_angle"),
     }, part=part)
 
 
@@ -67,7 +62,7 @@ RAY = _table("ray", Ray, {
         "resolution": Value("range_resolution", FLOAT, use=_KEPT),
     }),
     "noise": _noise("noise"),
-    **_kept("visibility_mask"),
+    **kept("visibility_mask"),
 })
 
 CAMERA = _table("camera", Camera, {
@@ -85,21 +80,21 @@ CAMERA = _table("camera", Camera, {
     }),
     "noise": _noise("noise"),
     "distortion": Group({
-        **{name: Value(name, FLOAT) for name in ("k1", "k2", "k3", "p1", "p2")},
+        **values_named(FLOAT, "k1", "k2", "k3", "p1", "p2"),
         "center": Value("distortion_center", VECTOR2),
     }),
     "lens": Group({
         "type": Value("type", TEXT),
         "custom_function": Group({
-            **{name: Value(name, FLOAT) for name in ("c1", "c2", "c3", "f")},
+            **values_named(FLOAT, "c1", "c2", "c3", "f"),
             "fun": Value("fun", TEXT),
         }),
         "scale_to_hfov": Value("scale_to_hfov", BOOL),
         "cutoff_angle": Value("cutoff_angle", FLOAT),
         "env_texture_size": Value("env_texture_size", INT),
-        **_kept("intrinsics", "projection"),
+        **kept("intrinsics", "projection"),
     }, part="lens"),
-    **_kept("save", "visibility_mask", "frame", "segmentation_type", "box_type",
+    **kept("save", "visibility_mask", "frame", "segmentation_type", "box_type",
             "optical_frame_id", "camera_info_topic", "trigger_topic", "triggered"),
 }, attributes={"name": Value("name", TEXT)})
 
@@ -117,7 +112,7 @@ IMU = _table("imu", Imu, {
         "grav_dir_x": Value("grav_dir_x", VECTOR3, use=_KEPT),
     }),
     "enable_orientation": Value("enable_orientation", BOOL, use=_KEPT),
-    **_kept("topic", "noise"),
+    **kept("topic", "noise"),
 })
 
 GPS = _table("gps", Gps, {
@@ -128,13 +123,12 @@ GPS = _table("gps", Gps, {
 })
 
 FORCE_TORQUE = _table("force_torque", ForceTorque, {
-    "frame": Value("frame", TEXT), "measure_direction": Value("measure_direction", TEXT),
+    **values_named(TEXT, "frame", "measure_direction"),
     "force": Group(_AXES, part="force"), "torque": Group(_AXES, part="torque"),
 })
 
 SONAR = _table("sonar", Sonar, {
-    "geometry": Value("geometry", TEXT), "min": Value("min", FLOAT), "max": Value("max", FLOAT),
-    "radius": Value("radius", FLOAT),
+    "geometry": Value("geometry", TEXT), **values_named(FLOAT, "min", "max", "radius"),
 })
 
 ALTIMETER = _table("altimeter", Altimeter, {
@@ -148,14 +142,13 @@ AIR_PRESSURE = _table("air_pressure", AirPressure, {
     "reference_altitude": Value("reference_altitude", FLOAT), "pressure": _noisy("pressure"),
 })
 
-LOGICAL_CAMERA = _table("logical_camera", LogicalCamera, {
-    name: Value(name, FLOAT) for name in ("near", "far", "aspect_ratio", "horizontal_fov")
-})
+LOGICAL_CAMERA = _table("logical_camera", LogicalCamera, values_named(
+    FLOAT, "near", "far", "aspect_ratio", "horizontal_fov"))
 
 TRANSCEIVER = _table("transceiver", Transceiver, {
     "essid": Value("essid", TEXT),
-    **{name: Value(name, FLOAT) for name in (
-        "frequency", "min_frequency", "max_frequency", "gain", "power", "sensitivity")},
+    **values_named(FLOAT, "frequency", "min_frequency", "max_frequency", "gain", "power",
+                   "sensitivity"),
 })
 
 BLOCKS: Mapping[str, Table] = {
@@ -177,6 +170,6 @@ SENSOR = _table("sensor", Sensor, {
     "topic": Value("topic", TEXT, use=_KEPT),
     "camera": Part(), "plugin": Part(),
     **{tag: Part(use=table.use) for tag, table in BLOCKS.items()},
-    **_kept("frame", "rfid", "rfidtag", "enable_metrics", "force_torque_sensor", "gz_frame_id",
+    **kept("frame", "rfid", "rfidtag", "enable_metrics", "force_torque_sensor", "gz_frame_id",
             "ignition_frame_id"),
 }, attributes={"type": Value("type", TEXT)}, known_attributes=("name",))

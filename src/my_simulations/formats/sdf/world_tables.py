@@ -19,7 +19,18 @@ from ...description.surroundings import (
 )
 from ...geometry import IDENTITY, Pose, Twist, Vec3
 from ..xml.source import FaultLevel
-from ..xml.tables import Entry, Group, Kept, Nested, Part, Table, Use, Value
+from ..xml.tables import (
+    Entry,
+    Group,
+    Kept,
+    Nested,
+    Part,
+    Table,
+    Use,
+    Value,
+    kept,
+    values_named,
+)
 from ..xml.values import (
     BOOL,
     COLOR,
@@ -38,8 +49,7 @@ WARNING = FaultLevel.WARNING
 PLUGINS, SHOWN, KEPT = Use.PLUGINS, Use.SHOWN, Use.KEPT
 
 SKY = Table("sky", Sky, {
-    "time": Value("time", FLOAT), "sunrise": Value("sunrise", FLOAT),
-    "sunset": Value("sunset", FLOAT),
+    **values_named(FLOAT, "time", "sunrise", "sunset"),
     "clouds": Group({
         "speed": Value("cloud_speed", FLOAT), "direction": Value("cloud_direction", FLOAT),
         "humidity": Value("cloud_humidity", FLOAT), "mean_size": Value("cloud_mean_size", FLOAT),
@@ -49,14 +59,13 @@ SKY = Table("sky", Sky, {
 }, level=WARNING, use=SHOWN)
 
 FOG = Table("fog", Fog, {
-    "type": Value("type", TEXT), "color": Value("color", COLOR), "start": Value("start", FLOAT),
-    "end": Value("end", FLOAT), "density": Value("density", FLOAT),
+    "type": Value("type", TEXT), "color": Value("color", COLOR),
+    **values_named(FLOAT, "start", "end", "density"),
 }, level=WARNING, use=SHOWN)
 
 SCENE = Table("scene", Scene, {
     "ambient": Value("ambient", COLOR), "background": Value("background", COLOR),
-    "shadows": Value("shadows", BOOL), "grid": Value("grid", BOOL),
-    "origin_visual": Value("origin_visual", BOOL),
+    **values_named(BOOL, "shadows", "grid", "origin_visual"),
     "sky": Nested("sky", SKY), "fog": Nested("fog", FOG, required=("type",)),
 }, level=WARNING, use=SHOWN)
 
@@ -65,8 +74,7 @@ GUI = Table("gui", Gui, {
 }, attributes={"fullscreen": Value("fullscreen", BOOL, use=KEPT)}, level=WARNING, use=SHOWN)
 
 GUI_CAMERA = Table("camera", GuiCamera, {
-    "pose": Value("pose", POSE), "view_controller": Value("view_controller", TEXT),
-    "projection_type": Value("projection_type", TEXT),
+    "pose": Value("pose", POSE), **values_named(TEXT, "view_controller", "projection_type"),
     "track_visual": Group({
         "name": Value("track", TEXT), "min_dist": Value("track_min_dist", FLOAT),
         "max_dist": Value("track_max_dist", FLOAT), "static": Value("track_static", BOOL),
@@ -78,15 +86,13 @@ GUI_CAMERA = Table("camera", GuiCamera, {
 WIND = Table("wind", Wind, {"linear_velocity": Value("linear_velocity", VECTOR3)},
              level=WARNING, use=PLUGINS)
 
-ATMOSPHERE = Table("atmosphere", Atmosphere, {
-    name: Value(name, FLOAT) for name in ("temperature", "pressure", "temperature_gradient")
-}, attributes={"type": Value("type", TEXT)}, level=WARNING, use=KEPT)
+ATMOSPHERE = Table("atmosphere", Atmosphere, values_named(
+    FLOAT, "temperature", "pressure", "temperature_gradient"),
+    attributes={"type": Value("type", TEXT)}, level=WARNING, use=KEPT)
 
 SPHERICAL = Table("spherical_coordinates", SphericalCoordinates, {
-    "surface_model": Value("surface_model", TEXT),
-    "world_frame_orientation": Value("world_frame_orientation", TEXT),
-    **{name: Value(name, FLOAT)
-       for name in ("latitude_deg", "longitude_deg", "elevation", "heading_deg")},
+    **values_named(TEXT, "surface_model", "world_frame_orientation"),
+    **values_named(FLOAT, "latitude_deg", "longitude_deg", "elevation", "heading_deg"),
 }, level=WARNING, use=PLUGINS)
 
 SURROUNDINGS: Mapping[str, Entry] = {
@@ -131,8 +137,8 @@ ACTOR = Table("actor", Actor, {
         "trajectory": Nested("trajectories", TRAJECTORY, required=("@id", "@type")),
     }),
     "plugin": Part(use=PLUGINS),
-    **{name: Kept() for name in ("link", "joint", "frame", "static", "origin", "enable_wind",
-                                 "allow_auto_disable", "self_collide")},
+    **kept("link", "joint", "frame", "static", "origin", "enable_wind",
+           "allow_auto_disable", "self_collide"),
 }, level=WARNING, known_attributes=("name", "static"), use=SHOWN)
 
 
@@ -156,10 +162,10 @@ POPULATION = Table("population", Population, {
     "pose": Value("pose", POSE), "model": Part(), "include": Part(),
     "model_count": Value("model_count", INT),
     "box": Group({"size": Value("box", VECTOR3)}),
-    "cylinder": Group({"radius": Value("radius", FLOAT), "length": Value("length", FLOAT)}),
+    "cylinder": Group(values_named(FLOAT, "radius", "length")),
     "distribution": Group({
-        "type": Value("distribution", TEXT), "rows": Value("rows", INT),
-        "cols": Value("cols", INT), "step": Value("step", VECTOR3),
+        "type": Value("distribution", TEXT), **values_named(INT, "rows", "cols"),
+        "step": Value("step", VECTOR3),
     }),
     "frame": Kept(),
 }, attributes={"name": Value("name", TEXT)})
@@ -198,8 +204,7 @@ class Nanoseconds:
 _NS: Any = Nanoseconds()
 _LINK: Mapping[str, Entry] = {
     "pose": Value("pose", POSE), "velocity": Value("twist", TwistKind()),
-    "acceleration": Kept(use=Use.IGNORED), "wrench": Kept(use=Use.IGNORED),
-    "collision": Kept(use=Use.IGNORED),
+    **kept("acceleration", "wrench", "collision", use=Use.IGNORED),
 }
 LINK_STATE = Table("link", LinkState, _LINK, level=WARNING, known_attributes=("name",))
 MODEL_STATE = Table("model", ModelState, {
@@ -213,5 +218,5 @@ STATE = Table("state", SavedState, {
     "wall_time": Value("wall_time_ns", _NS), "iterations": Value("iterations", INT),
     "insertions": Part(), "model": Part(), "light": Part(),
     "deletions": Group({"name": Value("deletions", TEXT, repeated=True)}),
-    **{name: Kept(use=Use.IGNORED) for name in ("road",)},
+    "road": Kept(use=Use.IGNORED),
 }, attributes={"world_name": Value("world_name", TEXT)}, level=WARNING)

@@ -11,7 +11,7 @@ from ...description.model import Inertial, JointAxis, Link, Mimic, Model
 from ...description.shapes import Box, Capsule, Collision, Color, Cylinder, Mesh, Sphere, Visual
 from ...geometry import IDENTITY_QUAT, ZERO3, Quat, Vec3
 from ..xml.source import FaultLevel
-from ..xml.tables import Entry, Group, Kept, Part, Table, Use, Value
+from ..xml.tables import Group, Kept, Part, Table, Use, Value, kept, values_named
 from ..xml.values import (
     BOOL,
     COLOR,
@@ -29,9 +29,9 @@ from ..xml.values import (
 FATAL, WARNING = FaultLevel.FATAL, FaultLevel.WARNING
 
 
-def _ignored(*names: str) -> Dict[str, Entry]:
+def _ignored(*names: str) -> Dict[str, Kept]:
     """Elements that are known and not kept, because SDF, in which robots are saved, lacks them."""
-    return {name: Kept(use=Use.IGNORED) for name in names}
+    return kept(*names, use=Use.IGNORED)
 
 
 @dataclass
@@ -105,9 +105,7 @@ LINK = Table("link", Link, {
 INERTIAL = Table("inertial", Inertial, {
     "origin": Part(),
     "mass": Group(attributes={"value": Value("mass", FLOAT)}),
-    "inertia": Group(attributes={
-        name: Value(name, FLOAT) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-    }),
+    "inertia": Group(attributes=values_named(FLOAT, "ixx", "ixy", "ixz", "iyy", "iyz", "izz")),
 }, level=FATAL, strict=True)
 
 COLLISION = Table("collision", Collision, {
@@ -122,12 +120,10 @@ GEOMETRIES: Mapping[str, Tuple[Table, Tuple[str, ...]]] = {
     "box": (Table("box", Box, attributes={"size": Value("size", VECTOR3)}, strict=True), ("size",)),
     "sphere": (Table("sphere", Sphere, attributes={"radius": Value("radius", FLOAT)}, strict=True),
                ("radius",)),
-    "cylinder": (Table("cylinder", Cylinder, attributes={
-        "radius": Value("radius", FLOAT), "length": Value("length", FLOAT),
-    }, strict=True), ("radius", "length")),
-    "capsule": (Table("capsule", Capsule, attributes={
-        "radius": Value("radius", FLOAT), "length": Value("length", FLOAT),
-    }, strict=True), ("radius", "length")),
+    "cylinder": (Table("cylinder", Cylinder, attributes=values_named(
+        FLOAT, "radius", "length"), strict=True), ("radius", "length")),
+    "capsule": (Table("capsule", Capsule, attributes=values_named(
+        FLOAT, "radius", "length"), strict=True), ("radius", "length")),
     "mesh": (Table("mesh", Mesh, attributes={
         "filename": Value("uri", TEXT), "scale": Value("scale", SCALE),
     }, strict=True), ("filename",)),
@@ -146,29 +142,24 @@ JOINT = Table("joint", Ends, {
     "safety_controller": Part(), **_ignored("calibration"),
 }, known_attributes=("name", "type"), strict=True)
 AXIS = Table("axis", Axis, attributes={"xyz": Value("xyz", VECTOR3)}, level=FATAL, strict=True)
-LIMIT_TABLE = Table("limit", Limits, attributes={
-    name: Value(name, LIMIT) for name in ("lower", "upper", "effort", "velocity")
-}, level=FATAL, strict=True)
+LIMIT_TABLE = Table("limit", Limits, attributes=values_named(
+    LIMIT, "lower", "upper", "effort", "velocity"), level=FATAL, strict=True)
 SAFETY = Table("safety_controller", Safety, attributes={
     "soft_lower_limit": Value("lower", FLOAT), "soft_upper_limit": Value("upper", FLOAT),
     "k_position": Value("k_position", FLOAT), "k_velocity": Value("k_velocity", FLOAT),
 }, level=WARNING, strict=True)
 MIMIC = Table("mimic", Mimic, attributes={
-    "joint": Value("joint", TEXT), "multiplier": Value("multiplier", FLOAT),
-    "offset": Value("offset", FLOAT),
+    "joint": Value("joint", TEXT), **values_named(FLOAT, "multiplier", "offset"),
 }, level=FATAL, strict=True)
-DYNAMICS = Table("dynamics", JointAxis, attributes={
-    "damping": Value("damping", FLOAT), "friction": Value("friction", FLOAT),
-}, level=FATAL, strict=True)
+DYNAMICS = Table("dynamics", JointAxis, attributes=values_named(FLOAT, "damping", "friction"),
+                 level=FATAL, strict=True)
 
 GAZEBO_MODEL = Table("gazebo", Model, {
-    "static": Value("static", BOOL),
-    "self_collide": Value("self_collide", BOOL),
-    "allow_auto_disable": Value("allow_auto_disable", BOOL),
+    **values_named(BOOL, "static", "self_collide", "allow_auto_disable"),
     "enable_wind": Value("enable_wind", BOOL, use=Use.PLUGINS),
     "plugin": Part(use=Use.PLUGINS), "link": Part(), "joint": Part(),
     "gripper": Kept(reported=True),
-    "frame": Kept(), "canonicalBody": Kept(), "selfCollide": Kept(), "turnGravityOff": Kept(),
+    **kept("frame", "canonicalBody", "selfCollide", "turnGravityOff"),
 })
 """`<gazebo>` without a reference."""
 

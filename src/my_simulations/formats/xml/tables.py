@@ -147,6 +147,16 @@ class Table:
         return _values(self.children, self.attributes, self.of, "")
 
 
+def values_named(kind: Kind, *names: str, use: Optional[Use] = None) -> Dict[str, Value]:
+    """Return entries that fill the fields of their own names."""
+    return {name: Value(name, kind, use=use) for name in names}
+
+
+def kept(*names: str, use: Use = Use.KEPT, reported: bool = False) -> Dict[str, Kept]:
+    """Return entries that are kept, all alike."""
+    return {name: Kept(use=use, reported=reported) for name in names}
+
+
 def _values(children: Mapping[str, Entry], attributes: Mapping[str, Value], of: Any,
             path: str) -> Iterator[Tuple[str, Value, Any]]:
     for name, value in attributes.items():
