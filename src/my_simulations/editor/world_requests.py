@@ -4,6 +4,7 @@ from __future__ import annotations
 import asyncio
 import secrets
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from typing import Any, Callable, Dict, List
 
 from .. import __version__
@@ -59,13 +60,18 @@ class WorldRequests:
 
     def routes(self) -> Dict[str, Route]:
         changes: Dict[str, Handler] = {
-            "edit": self._edit, "undo": self._undo, "redo": self._redo, "step": self._step,
-            "save": self._save, "open": self._open, "new": self._new,
-        }
-        others: Dict[str, Handler] = {"copy": self._copy, "play": self._play, "pause": self._pause}
+            "edit": self._edit, "step": self._step,
+            "save": partial(self._run_file_request, "saved", self._files.save),
+            "open": partial(self._run_file_request, "opened", self._files.open),
+            "new": partial(self._run_file_request, "opened", self._files.new),
+            **{verb: partial(self._move_in_history, verb) for verb in ("undo", "redo")}}
+        others: Dict[str, Handler] = {
+            "copy": lambda _, message: {"text": self._edits.copy(message["names"])},
+            "play": lambda *_: self._set_paused(False), "pause": lambda *_: self._set_paused(True)}
         return {"hello": Route(self._hello, None), "drag": Route(self._drag, None),
-                "folders": Route(self._folders, self._disk),
-                "new_folder": Route(self._new_folder, self._disk),
+                "folders": Route(lambda _, message: self._files.folders(message), self._disk),
+                "new_folder": Route(lambda _, message: self._files.new_folder(message),
+                                    self._disk),
                 "presence": Route(self._presence, None),
                 "autosave": Route(self._recover, None),
                 "drag_end": Route(self._drag_end, self.thread),
@@ -160,18 +166,9 @@ class WorldRequests:
                 self._notices.drag_ended(client.number, list(op["poses"]))
         return value
 
-    def _copy(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
-        return {"text": self._edits.copy(message["names"])}
-
-    def _undo(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
-        return self._moved_in_history(client, message, "undo")
-
-    def _redo(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
-        return self._moved_in_history(client, message, "redo")
-
-    def _moved_in_history(self, client: Client, message: Dict[str, Any],
-                          verb: str) -> Dict[str, Any]:
-        """Whose edits are taken back hear of it, and so does who takes them back."""
+    def _move_in_history(self, verb: str, client: Client,
+                         message: Dict[str, Any]) -> Dict[str, Any]:
+        """Undo or redo steps; notify their authors, and reply with their names."""
         _refuse_in_log(client)
         steps = message.get("to") or 0
         history = self._history
@@ -213,57 +210,27 @@ class WorldRequests:
 
     # -- time ------------------------------------------------------------------------------------
 
-    def _play(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
-        return self._set_paused(False)
-
-    def _pause(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
-        return self._set_paused(True)
-
     def _set_paused(self, paused: bool) -> Dict[str, Any]:
         clock = self._world.clock
         if not clock.choose_while_loading(paused):
             clock.pause() if paused else clock.unpause()
-        return self._time()
+        self._hub.stats_soon()
+        return {}
 
     def _step(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         steps = message["steps"]
         if not 0 < steps <= _MOST_STEPS:
             raise CommandError(f"steps must be 1 to {_MOST_STEPS}, not {steps}")
         step = self._world.clock.advance(steps)
-        self._time()
-        return {"step": step}
-
-    def _time(self) -> Dict[str, Any]:
         self._hub.stats_soon()
-        return {}
+        return {"step": step}
 
     # -- files -----------------------------------------------------------------------------------
 
-    def _save(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
-        return self._run_file_request(client, "saved", self._files.save, message)
-
-    def _open(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
-        self._set_aside(message)
-        return self._run_file_request(client, "opened", self._files.open, message)
-
-    def _new(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
-        self._set_aside(message)
-        return self._run_file_request(client, "opened", self._files.new, message)
-
-    def _set_aside(self, message: Dict[str, Any]) -> None:
-        """What is discarded can be recovered."""
+    def _run_file_request(self, verb: str, handler: Callable[[Dict[str, Any]], Dict[str, Any]],
+                          client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         if message.get("discard"):
             self._autosave.save_as_discarded()
-
-    def _folders(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
-        return self._files.folders(message)
-
-    def _new_folder(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
-        return self._files.new_folder(message)
-
-    def _run_file_request(self, client: Client, verb: str,
-                          handler: Callable[[Dict[str, Any]], Dict[str, Any]],
-                          message: Dict[str, Any]) -> Dict[str, Any]:
         with self._notices.notify_of_deletions(client.number):
             value = handler(message)
             if verb == "opened":

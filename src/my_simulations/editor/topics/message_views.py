@@ -90,23 +90,7 @@ def _odometry(message: Any) -> View:
             "angular": vector(twist.angular)}, b""
 
 
-def _path(message: Any) -> View:
-    return _poses([one.pose for one in message.poses], line=True)
-
-
-def _pose_array(message: Any) -> View:
-    return _poses(message.poses, line=False)
-
-
-def _pose_stamped(message: Any) -> View:
-    return _poses([message.pose], line=False)
-
-
-def _pose_with_covariance(message: Any) -> View:
-    return _poses([message.pose.pose], line=False)
-
-
-def _poses(poses: Any, line: bool) -> View:
+def _poses(poses: Any, line: bool = False) -> View:
     step = max(1, math.ceil(len(poses) / _MOST_POSES))
     return {"type": "path", "poses": [pose(one) for one in poses[::step]], "line": line}, b""
 
@@ -142,9 +126,11 @@ VIEWS: Dict[str, Callable[[Any], View]] = {
     "sensor_msgs/LaserScan": _scan, "sensor_msgs/Range": _range,
     "sensor_msgs/Image": image, "sensor_msgs/CompressedImage": compressed_image,
     "sensor_msgs/PointCloud": point_cloud, "sensor_msgs/PointCloud2": point_cloud_2,
-    "nav_msgs/Odometry": _odometry, "nav_msgs/Path": _path, "nav_msgs/OccupancyGrid": _map,
-    "geometry_msgs/PoseArray": _pose_array, "geometry_msgs/PoseStamped": _pose_stamped,
-    "geometry_msgs/PoseWithCovarianceStamped": _pose_with_covariance,
+    "nav_msgs/Odometry": _odometry, "nav_msgs/OccupancyGrid": _map,
+    "nav_msgs/Path": lambda message: _poses([one.pose for one in message.poses], line=True),
+    "geometry_msgs/PoseArray": lambda message: _poses(message.poses),
+    "geometry_msgs/PoseStamped": lambda message: _poses([message.pose]),
+    "geometry_msgs/PoseWithCovarianceStamped": lambda message: _poses([message.pose.pose]),
     "gazebo_msgs/ContactsState": _contacts,
 }
 """How a message of a type is shown; others as text."""
