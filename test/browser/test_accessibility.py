@@ -205,8 +205,8 @@ def test_the_questions_before_a_file_or_a_model_is_replaced(editor, node):
             check(editor)
             close_dialog(editor)
             close_dialog(editor)
-        else:
-            dialog.wait_for(state="detached")
+        else:  # a drop before that is ignored
+            editor.until("editor.store.selection.includes('replaced')", "the model")
 
 
 def test_other_users_and_the_dialog_of_the_own_name(editor, node, browser):
