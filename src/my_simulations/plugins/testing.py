@@ -1,7 +1,7 @@
 """A world without ROS and physics, in which a plugin can be tested.
 
 context = FakeContext('<plugin><updateRate>10</updateRate></plugin>', joints=("left", "right"))
-plugin = MyPlugin(context); plugin.load()
+plugin = context.load(MyPlugin)
 context.deliver("cmd_vel", linear={"x": 0.5})
 context.advance(1.0)
 assert context.joints["left"].motor == (5.0, 1.0)
@@ -9,7 +9,7 @@ assert context.published["odom"][-1].pose.pose.position.x == 0.5
 """
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, TypeVar
 
 from ..description.light import Light
 from ..description.model import Inertial, JointAxis, Model
@@ -26,11 +26,14 @@ from ..engine.ring import Clock
 from ..engine.servo_law import FOLLOW, ServoLaw
 from ..engine.wrench_laws import AT_REST, WrenchLaw
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3
+from .base import Plugin
 from .context import PluginError
 from .parameters import Parameters
 from .testing_graph import FakeGraph, FakeHandle, Message
 
 __all__ = ["FakeContext", "FakeHandle", "Message"]
+
+LoadedPlugin = TypeVar("LoadedPlugin", bound=Plugin)
 
 
 class _Call:
@@ -124,6 +127,12 @@ class FakeContext(FakeGraph):
         self._world_changes: List[_Call] = []
 
     # -- what a test does --------------------------------------------------------------------------
+
+    def load(self, kind: Callable[[Any], LoadedPlugin]) -> LoadedPlugin:
+        """Make a plugin of a class, load it, and return it."""
+        plugin = kind(self)
+        plugin.load()
+        return plugin
 
     def advance(self, seconds: float) -> None:
         """Advance sim time: joints move, and the scheduled functions are called."""

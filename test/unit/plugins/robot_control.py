@@ -48,8 +48,7 @@ class Arm:
         for joint in self.context.description.joints:
             self.context.joints[joint.name].spec = joint
         self.context.ros_parameters = {NS: {**controllers, **(parameters or {})}}
-        self.plugin = kind(self.context)
-        self.plugin.load()
+        self.plugin = self.context.load(kind)
 
     def ask(self, service, **fields):
         response = Message()

@@ -63,8 +63,7 @@ def test_the_imu_of_a_nested_model_is_named_below_the_model_of_the_plugin(autopi
                                                                 Pose((place, 0.0, 0.0))))
                              for scope, place in (("other::", 1.0), ("drone::", 2.0))]
     context.scoped = lambda link: f"robot::drone::{link}"
-    plugin = ArduPilot(context)
-    plugin.load()
+    plugin = context.load(ArduPilot)
     assert plugin._imu._mount.position == (2.0, 0.0, 0.0)
     plugin.close()
 

@@ -36,8 +36,7 @@ def camera(inside="", block=None, kind="camera", rate=10.0, more=(), cls=Camera)
     picture = np.arange(8 * 6 * 3, dtype=np.uint8).reshape(6, 8, 3)
     depth = np.full((6, 8), 2.0, np.float32)
     context.pictures = [Pictures(picture, depth)] * (1 + len(more))
-    plugin = cls(context)
-    plugin.load()
+    context.load(cls)
     return context
 
 

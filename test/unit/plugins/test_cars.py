@@ -52,9 +52,7 @@ def prius(**more):
     context = FakeContext(f"<plugin>{inside}</plugin>", joints=PRIUS)
     for name, x, y in (("fl", 2.8, 0.8), ("fr", 2.8, -0.8), ("bl", 0.0, 0.8), ("br", 0.0, -0.8)):
         context.link(name).pose = Pose((x, y, 0.3))
-    plugin = PriusHybrid(context)
-    plugin.load()
-    return context, plugin
+    return context, context.load(PriusHybrid)
 
 
 def control(context, **fields):
@@ -134,9 +132,7 @@ ROLLING = 0.25 * 0.01 * 1700.0 * 9.81
 
 def audibot(inside=""):
     context = FakeContext(f"<plugin>{inside}</plugin>", joints=AUDI)
-    plugin = Audibot(context)
-    plugin.load()
-    return context, plugin
+    return context, context.load(Audibot)
 
 
 def audi_rolls(context, speed, yaw=0.0):

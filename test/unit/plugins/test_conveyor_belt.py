@@ -17,9 +17,7 @@ def belt(inside=""):
                           joints=["belt_joint"])
     context.joints["belt_joint"].spec = Joint("belt_joint", "prismatic", "world", "belt",
                                               axis=JointAxis(lower=0.0, upper=1.0))
-    plugin = ConveyorBelt(context)
-    plugin.load()
-    return context, plugin
+    return context, context.load(ConveyorBelt)
 
 
 def set_power(context, **request):

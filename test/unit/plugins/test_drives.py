@@ -29,9 +29,7 @@ WHEELS = ("left_joint", "right_joint")
 
 def diff_drive(inside="", **options):
     context = FakeContext(f"<plugin>{inside}</plugin>", joints=WHEELS, **options)
-    plugin = DiffDrive(context)
-    plugin.load()
-    return context, plugin
+    return context, context.load(DiffDrive)
 
 
 def test_a_command_becomes_wheel_speeds_with_the_defaults_of_the_original():
@@ -183,8 +181,7 @@ def test_planar_move_applies_a_command_to_the_last_step_of_its_time(seconds):
 
 def test_a_command_is_forgotten_also_when_the_clock_is_set_back():
     context = FakeContext("<plugin><cmdTimeout>0.1</cmdTimeout></plugin>")
-    plugin = PlanarMove(context)
-    plugin.load()
+    plugin = context.load(PlanarMove)
     context.advance(60.0)
     context.deliver("cmd_vel", linear={"x": 0.2, "y": 0.1}, angular={"z": 0.5})
     context.step = 0
@@ -211,9 +208,7 @@ TRICYCLE = ("front_steering_joint", "front_wheel_joint", "left_wheel_joint", "ri
 
 def tricycle(inside=""):
     context = FakeContext(f"<plugin>{inside}</plugin>", joints=TRICYCLE)
-    plugin = TricycleDrive(context)
-    plugin.load()
-    return context, plugin
+    return context, context.load(TricycleDrive)
 
 
 def test_a_tricycle_drives_and_steers_its_front_wheel():

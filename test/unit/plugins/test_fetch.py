@@ -51,8 +51,7 @@ class Fetch:
         self.context.ros_parameters = {
             **CONTROLLERS, **more,
             "gazebo": {"default_controllers": defaults, **dict.fromkeys(NAMES, gains)}}
-        self.plugin = FetchGazebo(self.context)
-        self.plugin.load()
+        self.plugin = self.context.load(FetchGazebo)
 
     def at(self, *names):
         return [self.context.joints[name].position for name in names]

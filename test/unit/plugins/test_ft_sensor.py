@@ -22,8 +22,7 @@ def sensor_of(inside=ASKED, **options):
                                             Pose(orientation=quat_from_rpy(0, 0, math.pi / 2))))
     context.joint_wrenches["wrist"] = JointWrench((1.0, 2.0, 3.0), (4.0, 5.0, 6.0),
                                             quat_from_rpy(0, 0, math.pi))
-    plugin = FtSensor(context)
-    plugin.load()
+    context.load(FtSensor)
     return context
 
 

@@ -29,8 +29,7 @@ def hanging(inside=UP, mass=2.0):
     context = FakeContext(f"<plugin>{inside}</plugin>", model="box", links=["link"])
     context.description = Model("box", links=[Link("link", inertial=Inertial(mass))])
     context.links["link"].inertial = Inertial(mass)
-    plugin = Harness(context)
-    plugin.load()
+    context.load(Harness)
     return context
 
 
@@ -105,9 +104,7 @@ def lift(inside=""):
                           model="elevator", joints=["lift", "door"])
     for joint in context.joints.values():
         joint.spec = Joint(joint.name, "prismatic", "world", joint.name, axis=JointAxis())
-    plugin = Elevator(context)
-    plugin.load()
-    return context, plugin
+    return context, context.load(Elevator)
 
 
 def targets(context):
@@ -204,9 +201,7 @@ def windy(inside="", velocity=(3.0, 4.0, 0.0)):
     context.others = {"boat": Model("boat", links=[sail, heavy], enable_wind=True),
                       "rock": Model("rock", links=[Link("stone")]),
                       "mast": Model("mast", links=[Link("pole")], enable_wind=True, static=True)}
-    plugin = Wind(context)
-    plugin.load()
-    return context, plugin
+    return context, context.load(Wind)
 
 
 CALM = ("<horizontal><magnitude><time_for_rise>0</time_for_rise>{}</magnitude>"

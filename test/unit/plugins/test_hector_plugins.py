@@ -83,8 +83,7 @@ def test_the_drift_of_the_velocity_is_integrated_into_the_place():
     context = FakeContext("<plugin><updateRate>4</updateRate><velocityDrift>0 0 1</velocityDrift>"
                           "<velocityDriftFrequency>1e-9</velocityDriftFrequency>"
                           "<driftFrequency>0</driftFrequency></plugin>")
-    plugin = hector.Gps(context)
-    plugin.load()
+    plugin = context.load(hector.Gps)
     context.advance(60.0)
     climb = context.published["fix_velocity"][-1].vector.z
     assert abs(climb) > 0.01

@@ -30,9 +30,7 @@ def loaded(cls, inside="", parameters=None, inertial=None):
     context = FakeContext(f"<plugin>{inside}</plugin>")
     context.ros_parameters = parameters or {}
     context.link("").inertial = inertial or Inertial(MASS, ixx=0.01, iyy=0.02, izz=0.03)
-    plugin = cls(context)
-    plugin.load()
-    return context, plugin
+    return context, context.load(cls)
 
 
 def push(context):

@@ -118,8 +118,7 @@ def test_other_servos_are_refused(axes, inside, message):
 
 def test_a_reset_forgets_the_command():
     context = servos("y")
-    plugin = HectorServo(context)
-    plugin.load()
+    plugin = context.load(HectorServo)
     context.deliver("/tf", transforms=stabilized())
     point(context, 0.0, 0.7, 0.0)
     context.advance(0.01)

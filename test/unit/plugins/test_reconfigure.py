@@ -152,8 +152,7 @@ def test_wheels_slip_as_was_set_and_again_on_their_own():
                           "<wheel_radius>0.2</wheel_radius></wheel></plugin>", joints=("axle",))
     context.description.links.append(Link("rear", collisions=[Collision("c", Sphere(0.3))]))
     context.description.joints.append(Joint("axle", "revolute", "base", "rear", axis=JointAxis()))
-    plugin = RosWheelSlip(context)
-    plugin.load()
+    plugin = context.load(RosWheelSlip)
     service, name = "robot/wheel_slip", "slip_compliance_unitless_lateral"
     assert context.slips["rear"][3:] == (1.0, 0.0)
     ask(context, service, doubles=[(name, 5.0)])

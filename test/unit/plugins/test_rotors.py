@@ -30,9 +30,7 @@ K, MOMENT = 8.54858e-06, 0.016
 
 def loaded(cls, inside="", joints=(), **options):
     context = FakeContext(f"<plugin>{inside}</plugin>", joints=joints, **options)
-    plugin = cls(context)
-    plugin.load()
-    return context, plugin
+    return context, context.load(cls)
 
 
 ROTOR = ("<robotNamespace>mav</robotNamespace><jointName>rotor_1_joint</jointName><linkName>rotor_1"

@@ -114,8 +114,7 @@ def test_the_acceleration_of_an_imu_sensor_is_over_the_period_of_its_sensor(rate
     context = FakeContext("<plugin><frameName>imu</frameName><updateRateHZ>10</updateRateHZ>"
                           "</plugin>", sensor=Sensor("i", "imu", update_rate=rate),
                           sensor_link="base")
-    plugin = SensorImu(context)
-    plugin.load()
+    plugin = context.load(SensorImu)
     for _ in range(2):
         context.advance(0.1 - seconds)
         speed = context.link("base").twist.linear[0]
@@ -258,8 +257,7 @@ def test_a_plugin_with_an_empty_topic_name_publishes_nothing():
 
 def test_a_force_holds_until_the_next_one():
     context = FakeContext("<plugin><bodyName>base</bodyName><topicName>force</topicName></plugin>")
-    plugin = Force(context)
-    plugin.load()
+    context.load(Force)
     context.deliver("force", force={"x": 1.0, "y": 0.0, "z": 2.0},
                     torque={"x": 0, "y": 0, "z": 3.0})
     assert context.wrenches["base"] == ((1.0, 0.0, 2.0), (0, 0, 3.0))
@@ -298,8 +296,7 @@ def noisy(kind):
         context = laser(inside=noise)
     else:
         context = FakeContext(f"<plugin>{BODY}{noise}<updateRate>50</updateRate></plugin>")
-    plugin = kind(context)
-    plugin.load()
+    plugin = context.load(kind)
 
     def told():
         context.published["told"].clear()

@@ -19,9 +19,7 @@ OFF = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 def drone(inside=""):
     context = FakeContext(f"<plugin>{inside}</plugin>")
     context.link("").inertial = Inertial(MASS, ixx=0.01, iyy=0.02, izz=0.03)
-    plugin = SjtuDrone(context)
-    plugin.load()
-    return context, plugin
+    return context, context.load(SjtuDrone)
 
 
 def flying(inside=""):

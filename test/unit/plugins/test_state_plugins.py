@@ -138,8 +138,7 @@ def test_points_without_times_are_played_one_a_step(arm):
 
 
 def test_a_reset_ends_it(arm):
-    plugin = JointPoseTrajectory(arm)
-    plugin.load()
+    plugin = arm.load(JointPoseTrajectory)
     play(arm, point(0.0, 0.1, 0.1), point(0.5, 0.9, 0.9))
     plugin.reset()
     arm.advance(1.0)
@@ -200,8 +199,7 @@ def test_a_mimic_joint_is_coupled_with_the_defaults_of_the_original():
 
 def test_an_initial_velocity_comes_back_with_a_reset():
     context = FakeContext("<plugin><linear>1 2 3</linear><angular>0 0 1</angular></plugin>")
-    plugin = InitialVelocity(context)
-    plugin.load()
+    plugin = context.load(InitialVelocity)
     context.twist = Twist((0.0,) * 3, (0.0,) * 3)
     plugin.reset()
     assert context.twist == Twist((1.0, 2.0, 3.0), (0.0, 0.0, 1.0))
@@ -210,9 +208,7 @@ def test_an_initial_velocity_comes_back_with_a_reset():
 def wander(xml, seed=0):
     context = FakeContext(f"<plugin><link>l</link>{xml}</plugin>", links=("l",))
     context.seed = seed
-    plugin = RandomVelocity(context)
-    plugin.load()
-    return context, plugin
+    return context, context.load(RandomVelocity)
 
 
 def test_a_random_velocity_begins_with_the_initial_one_and_changes_after_each_period():
@@ -290,8 +286,7 @@ def test_pals_odometry_is_that_of_the_world():
 def test_noise_of_pals_odometry_adds_up():
     context = FakeContext("<plugin><bodyName>base</bodyName><topicName>truth</topicName>"
                           "<gaussianNoise>0.01</gaussianNoise></plugin>")
-    plugin = PalWorldOdometry(context)
-    plugin.load()
+    plugin = context.load(PalWorldOdometry)
     context.advance(4.0)
     places = [one.pose.pose.position.x for one in context.published["truth"]]
     steps = [after - before for before, after in zip(places, places[1:])]
