@@ -72,7 +72,7 @@ class _Client:
         import time
 
         until = time.monotonic() + SERVER_SECONDS
-        if not master_api.wait(self._master, self._name, self.ended, _complain, until):
+        if not master_api.wait_for_master(self._master, self._name, self.ended, _complain, until):
             return None
         told = False
         while not self.ended.is_set():

@@ -148,7 +148,7 @@ def _reach_master(words: List[str]) -> None:
 
     uri = master_api.master_uri(words)
     deadline = time.monotonic() + MASTER_SECONDS
-    if not master_api.wait(uri, "/spawn_model", threading.Event(), say, deadline):
+    if not master_api.wait_for_master(uri, "/spawn_model", threading.Event(), say, deadline):
         raise SpawnError(f"no ROS master responded at {uri} within {MASTER_SECONDS:g} s")
 
 

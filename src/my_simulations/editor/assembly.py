@@ -69,7 +69,7 @@ class Assembly:
         pages = Pages(options, web_folder, documents, protocol.limits["upload_bytes"], self._export)
         self.hub = Hub(simulator, documents, protocol, options.check_outgoing)
         self._plugins = PluginStates(options.plugins)
-        self.hub.greetings.append(self._plugins.greeting)
+        self.hub.greetings.append(self._plugins.last_push)
         self.hub.on_tick.append(self._push_plugins)
         self._pool = ThreadPoolExecutor(4, "editor requests")
         library = Library(resolver, documents.served, options.config_dir, self._downloading)
@@ -165,7 +165,7 @@ class Assembly:
     def _export(self, name: str) -> Tuple[bytes, str]:
         """The download of that name: the world as it is, or a log."""
         if name.endswith((".world", ".sdf")):
-            return self._files.text(), name
+            return self._files.world_sdf(), name
         if name.endswith(".log"):
             return self._logs.data(name[:-len(".log")]), name
         raise EditRefusedError("not-found", f"unknown download {name!r}")

@@ -44,7 +44,7 @@ def complete_inertia(inertial: Inertial, collisions: List[Collision],
     Returns None if no value is omitted, or if the omitted values cannot be estimated.
     """
     if is_zero(inertial):
-        better = of_shapes(inertial, collisions)
+        better = with_tensor_of_shapes(inertial, collisions)
         return None if better is None else (better, "is zero; that of its shapes is used")
     return _raise_moments(inertial)
 
@@ -71,7 +71,7 @@ def is_zero(inertial: Inertial) -> bool:
     return i.mass > 0 and not any((i.ixx, i.iyy, i.izz, i.ixy, i.ixz, i.iyz))
 
 
-def of_shapes(inertial: Inertial, collisions: List[Collision]) -> Optional[Inertial]:
+def with_tensor_of_shapes(inertial: Inertial, collisions: List[Collision]) -> Optional[Inertial]:
     """The same mass and centre of mass, with the tensor of the collision shapes at uniform density.
 
     Returns None if no collision is a box, sphere or cylinder.

@@ -132,7 +132,7 @@ class PluginHost:
 
     def faults(self, model: str) -> List[Issue]:
         """Return the faults of the plugins of a model; from any thread."""
-        return [one.fault for one in self._models.of(model) if one.fault is not None]
+        return [one.fault for one in self._models.plugins_of(model) if one.fault is not None]
 
     def states(self) -> List[PluginState]:
         """Return the states of all plugins; from any thread."""

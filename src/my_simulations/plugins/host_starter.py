@@ -61,7 +61,7 @@ class HostStarter:
                 return True
             self._seen_revision = revision
             if self._host is None and not (
-                    models.with_plugins()[1] or world.plugins
+                    models.entities_with_plugins()[1] or world.plugins
                     or any(actor.plugins for actor in world.actors)):
                 return True
             host = self._begin_host()

@@ -40,8 +40,8 @@ class Option:
     high: Value
     meaning: str
 
-    def within(self, value: Value) -> Value:
-        """A value brought into the range. Raises OptionError."""
+    def clamp(self, value: Value) -> Value:
+        """Return the value within the range. Raises OptionError."""
         if isinstance(value, bool):
             return value
         if not math.isfinite(value):
@@ -96,7 +96,7 @@ class OptionMessages:
                 option = self._options.get(element.name)
                 if option is None or type(option.default) is not kind:
                     raise self._unknown(word, element.name)
-                wanted[element.name] = option.within(element.value)
+                wanted[element.name] = option.clamp(element.value)
         for element in config.strs:
             raise self._unknown("str", element.name)
         return wanted

@@ -79,7 +79,7 @@ class ModelPlugins:
         for _, running in list(self._models.values()):
             yield from list(running)
 
-    def of(self, model: str) -> List[RunningPlugin]:
+    def plugins_of(self, model: str) -> List[RunningPlugin]:
         """The plugins of a model, as far as they are loaded; from any thread."""
         _, running = self._models.get(model, (None, []))
         return list(running)
@@ -96,7 +96,7 @@ class ModelPlugins:
         """Find the plugins to load and to end; call `rebind` for those that continue."""
         if self._simulator.models.revision == self.revision:
             return
-        self.revision, entities = self._simulator.models.with_plugins()
+        self.revision, entities = self._simulator.models.entities_with_plugins()
         self._compare({WORLD_SCOPE: self._world_entity(),
                        **{entity.model.name: entity for entity in entities}})
 

@@ -38,10 +38,10 @@ class ConnectedModels:
         with self._session.registry_lock:
             return len(self._session.registry)
 
-    def with_plugins(self) -> Tuple[int, List[Entity]]:
+    def entities_with_plugins(self) -> Tuple[int, List[Entity]]:
         """The revision, and the models that have a plugin."""
         with self._session.registry_lock:
-            return self._session.registry.revision, self._session.registry.with_plugins()
+            return self._session.registry.revision, self._session.registry.entities_with_plugins()
 
     def entity(self, name: str) -> Entity:
         """A model with its rows and names. Raises UnknownEntityError."""
@@ -170,12 +170,12 @@ class ConnectedModels:
             self._connections = self._connections.with_joint(wanted, name)
 
     def attachments(self, name: str) -> List[Joint]:
-        return self._connections.joint(name)
+        return self._connections.joints_named(name)
 
     def detach(self, name: str) -> bool:
         """Remove a joint between models; return whether it existed."""
         with self._session.structure_lock:
-            if not self._connections.joint(name):
+            if not self._connections.joints_named(name):
                 return False
             self._session.call(DisconnectModels((name,)))
             self._connections = self._connections.without_joint(name)

@@ -82,7 +82,7 @@ class Joints:
                 for (entity, row), (name, value) in zip(found, positions.items())),
                              tuple(sorted({entity.model_id for entity, _ in found})))
 
-        session.move(look_up)
+        session.call_looked_up(look_up)
 
     def edit(self, name: str, joint: Joint) -> None:
         """Change the axes (limits, friction, damping, spring, motor) or the type of a joint.

@@ -55,7 +55,7 @@ class ModelConnections:
         """Return the connections without the joints of `Models.attach`."""
         return replace(self, joints=self.permanent_joints, attached=())
 
-    def joint(self, name: str) -> List[Joint]:
+    def joints_named(self, name: str) -> List[Joint]:
         return self.joints.with_name(name).joints
 
     def detach_commands(self) -> List[Command]:

@@ -102,7 +102,7 @@ class Registry:
     def __len__(self) -> int:
         return len(self._entities)
 
-    def with_plugins(self) -> List[Entity]:
+    def entities_with_plugins(self) -> List[Entity]:
         """The models that have a plugin, in the order in which they were added or edited."""
         return list(self._with_plugins.values())
 

@@ -88,10 +88,10 @@ class Session:
                     return
             finally:
                 self.structure_lock.release()
-        self.move(look_up)
+        self.call_looked_up(look_up)
 
-    def move(self, look_up: Callable[[], Command]) -> None:
-        """Call what `look_up` makes of the registry, which is locked meanwhile.
+    def call_looked_up(self, look_up: Callable[[], Command]) -> None:
+        """Call the command that `look_up` makes while the registry is locked.
 
         If a model was removed in between, it is looked up again by its name, because an edit
         replaces the entity of a model. Raises CommandError, and what `look_up` raises.

@@ -182,7 +182,7 @@ class States:
             return SetLinkState(entity.first_link_row + number, at, speed, reference,
                                 (entity.model_id, *self._owner(reference)))
 
-        session.move(look_up)
+        session.call_looked_up(look_up)
 
     def _owner(self, frame: Optional[Frame]) -> Tuple[int, ...]:
         """The id of the model whose link a frame is. Requires the registry lock."""

@@ -112,7 +112,7 @@ def header_of(path: str) -> Dict[str, Any]:
     return dict(header)
 
 
-def lines(path: str) -> Iterator[Tuple[int, bytes]]:
+def read_rows(path: str) -> Iterator[Tuple[int, bytes]]:
     """Yield the offset and the text of each complete row, without the header."""
     with open(path, "rb") as stream:
         offset = len(stream.readline())
@@ -124,7 +124,7 @@ def lines(path: str) -> Iterator[Tuple[int, bytes]]:
 
 def rows(path: str) -> Iterator[Row]:
     """The rows, in the order in which cases finished. Raises CommandError for a broken line."""
-    for offset, line in lines(path):
+    for offset, line in read_rows(path):
         try:
             yield row_of(line)
         except (ValueError, TypeError, KeyError, AttributeError) as fault:
@@ -139,7 +139,7 @@ def statuses(paths: Sequence[str]) -> Dict[int, str]:
     known = {status.encode(): status for status in STATUSES}
     found: Dict[int, str] = {}
     for path in paths:
-        for offset, line in lines(path):
+        for offset, line in read_rows(path):
             at = line.find(b'"case":"') + 8
             try:
                 status = known[line[_STATUS_AT:line.index(b'"', _STATUS_AT)]]

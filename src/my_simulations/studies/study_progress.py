@@ -50,13 +50,14 @@ class Progress:
         else:
             others = ", ".join(f"{count} {status}" for status, count in sorted(rate.counts.items())
                                if status != OK)
-            self._stream.write(f"{before}{bar(rate.done, rate.total)} {rate.done}/{rate.total}"
+            shown = progress_bar(rate.done, rate.total)
+            self._stream.write(f"{before}{shown} {rate.done}/{rate.total}"
                                f"  {rate.per_second:.1f}/s  {duration_text(rate.seconds_left)} left"
                                + (f"  {others}" if others else "") + after)
         self._stream.flush()
 
 
-def bar(done: int, total: int, width: int = 24) -> str:
+def progress_bar(done: int, total: int, width: int = 24) -> str:
     full = width * done // total if total else width
     return "[" + "#" * full + "." * (width - full) + "]"
 

@@ -7,7 +7,7 @@ import importlib.util
 import itertools
 from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
-from .journal import lines
+from .journal import read_rows
 from .replacing import replacement_file
 from .row import Row, row_of
 from .study import Study
@@ -27,7 +27,7 @@ def rows_in_order(paths: Sequence[str]) -> Iterator[Row]:
     """The rows of journals in the order of the plan; of two of one case the last."""
     places: List[Tuple[int, int, int]] = []
     for number, path in enumerate(paths):
-        for offset, line in lines(path):
+        for offset, line in read_rows(path):
             at = line.find(b'"index":') + 8
             places.append((int(line[at:line.index(b",", at)]), number, offset))
     places.sort()

@@ -212,20 +212,20 @@ def test_a_plugin_that_failed_starts_again_when_its_model_is_edited(case):
 def test_an_edit_starts_no_plugin_again_that_works(case):
     made = case()
     made.goes_on()
-    running = made.host._models.of("works")[0].plugin
+    running = made.host._models.plugins_of("works")[0].plugin
     described = made.sim.models.get("works")
     made.sim.models.edit("works", replace(described, allow_auto_disable=False))
     assert made.host.wait_until_loaded()
-    assert made.host._models.of("works")[0].plugin is running
+    assert made.host._models.plugins_of("works")[0].plugin is running
     made.goes_on()
 
 
 def test_a_plugin_starts_again_when_its_model_gets_other_joints(case):
     made = case()
-    running = made.host._models.of("works")[0].plugin
+    running = made.host._models.plugins_of("works")[0].plugin
     described = made.sim.models.get("works")
     made.sim.models.edit("works", replace(described, joints=[
         replace(joint, name="renamed") for joint in described.joints]))
     assert made.host.wait_until_loaded()
-    assert made.host._models.of("works")[0].plugin is not running
+    assert made.host._models.plugins_of("works")[0].plugin is not running
     made.goes_on()

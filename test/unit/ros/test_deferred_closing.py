@@ -81,11 +81,11 @@ def test_a_call_that_is_under_way_is_waited_for():
         assert go.wait(SECONDS)
         done.append("slow")
 
-    closing.put("/a", slow)
+    closing.close_soon("/a", slow)
     assert begun.wait(SECONDS)
-    waiting = threading.Thread(target=lambda: (closing.finish("/a"), done.append("used again")))
+    waiting = threading.Thread(target=lambda: (closing.close_now("/a"), done.append("used again")))
     waiting.start()
-    closing.finish("/other")
+    closing.close_now("/other")
     assert done == []
     go.set()
     waiting.join(SECONDS)
@@ -100,7 +100,7 @@ def test_a_removal_that_fails_is_logged_and_the_others_go_on(monkeypatch):
     def fail():
         raise ValueError("no answer")
 
-    closing.put("/a", fail)
-    closing.put("/b", done.set)
+    closing.close_soon("/a", fail)
+    closing.close_soon("/b", done.set)
     assert done.wait(SECONDS)
     assert [words[1] for words in logged] == ["/a"]

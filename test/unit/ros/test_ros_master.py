@@ -30,7 +30,7 @@ def graph():
 
 def test_a_master_that_answers_ends_the_wait_without_a_word(graph):
     said = []
-    assert master_api.wait(graph, "/me", threading.Event(), said.append)
+    assert master_api.wait_for_master(graph, "/me", threading.Event(), said.append)
     assert said == []
 
 
@@ -42,12 +42,12 @@ def test_without_a_master_it_says_so_until_it_is_stopped():
         said.append(line)
         stop.set()
 
-    assert not master_api.wait(uri, "/me", stop, say)
+    assert not master_api.wait_for_master(uri, "/me", stop, say)
     assert uri in said[0] and "roscore" in said[0]
 
 
 def test_the_wait_ends_at_its_deadline():
-    assert not master_api.wait(silent_uri(), "/me", threading.Event(), lambda line: None,
+    assert not master_api.wait_for_master(silent_uri(), "/me", threading.Event(), lambda line: None,
                            time.monotonic())
 
 

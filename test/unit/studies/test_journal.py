@@ -14,7 +14,7 @@ from my_simulations.studies.journal import (
     Journal,
     finished_cases,
     header_of,
-    lines,
+    read_rows,
     rows,
     statuses,
 )
@@ -57,7 +57,7 @@ def test_a_journal_cut_anywhere_keeps_the_rows_before_the_cut(tmp_path):
     journal.close()
     with open(path, "rb") as stream:
         whole = stream.read()
-    ends = [offset + len(line) for offset, line in lines(path)]
+    ends = [offset + len(line) for offset, line in read_rows(path)]
     for length in range(len(whole)):
         with open(path, "wb") as stream:
             stream.write(whole[:length])

@@ -172,7 +172,8 @@ class Autosave:
         write_atomically(about, json.dumps(data).encode(), overwrite=True, private=True)
 
     def _write(self) -> None:
-        write_atomically(self._path(".world"), self._files.text(), overwrite=True, private=True)
+        world = self._files.world_sdf()
+        write_atomically(self._path(".world"), world, overwrite=True, private=True)
         about = {"file": self._files.file, "time": time.time(), "process": self._process,
                  "world": self._name + ".world", "launched": self._files.launched()}
         write_atomically(self._path(".json"), json.dumps(about).encode(), overwrite=True,

@@ -218,8 +218,8 @@ class WorldFiles:
         """The models that the launch file spawned."""
         return self._world.models.launched()
 
-    def text(self) -> bytes:
-        """The world as SDF, as it is now, with all that is in it."""
+    def world_sdf(self) -> bytes:
+        """Return the SDF of the running world with its state."""
         world = present_world(self._world)
         return write_world(world, world.state)
 

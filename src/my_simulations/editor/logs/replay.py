@@ -108,7 +108,7 @@ class Logs:
         if os.path.lexists(path):
             raise EditRefusedError("exists", f"log {name!r} already exists")
         self._writer, self._name, self._revision = LogWriter(path), name, -1
-        self._hub.add_listeners(1)
+        self._hub.count_pose_readers(1)
         self._hub.push(self.state())
         return {"name": name}
 
@@ -122,7 +122,7 @@ class Logs:
         try:
             self.close()
         finally:
-            self._hub.add_listeners(-1)
+            self._hub.count_pose_readers(-1)
             self._hub.push(self.state())
         return {"name": self._name}
 
@@ -159,7 +159,7 @@ class Logs:
         self._report(warning("log", f"the log {self._name!r} ends here: {fault}"))
         with contextlib.suppress(CommandError):  # this fault was reported
             self.close()
-        self._hub.add_listeners(-1)
+        self._hub.count_pose_readers(-1)
         self._hub.push(self.state())
 
     def _list(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:

@@ -32,11 +32,11 @@ class Solids:
         known = hashlib.sha256(mesh_key(solid).encode()).hexdigest()[:16]
         with self._lock:
             self._known[known] = solid
-        return f"/solid/{known}.{self.form(solid)}"
+        return f"/solid/{known}.{self.extension(solid)}"
 
     @staticmethod
-    def form(solid: Solid) -> str:
-        """Of the file in which the page gets it."""
+    def extension(solid: Solid) -> str:
+        """Return the extension of the file in which the page gets a solid."""
         is_ply = isinstance(solid, Mesh) and solid.path.lower().endswith(".ply")
         return "ply" if is_ply else "stl"
 
@@ -63,7 +63,7 @@ def _binary_file(solid: Solid) -> bytes:
     corners = np.asarray(data.vertices)[np.asarray(data.triangles)]
     if not len(corners):
         raise InputError([])
-    if isinstance(solid, Mesh) and Solids.form(solid) == "ply":
+    if isinstance(solid, Mesh) and Solids.extension(solid) == "ply":
         return _binary_ply(solid, corners)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)

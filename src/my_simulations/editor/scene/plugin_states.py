@@ -31,8 +31,8 @@ class PluginStates:
         if states == self._sent:
             return None
         self._sent = states
-        return self.greeting()
+        return self.last_push()
 
-    def greeting(self) -> Dict[str, Any]:
+    def last_push(self) -> Dict[str, Any]:
         """Return the push with the states that were last read."""
         return {"type": "plugins", "states": [to_json(state) for state in self._sent]}

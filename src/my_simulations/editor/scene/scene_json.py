@@ -161,7 +161,7 @@ class Documents:
                     "fallback": self.solids.url(mesh)}
         if url is not None and extension in MOVEMENTS:
             return {"url": url, "format": MOVEMENTS[extension], "fallback": None}
-        return {"url": self.solids.url(mesh), "format": self.solids.form(mesh), "submesh": "",
+        return {"url": self.solids.url(mesh), "format": self.solids.extension(mesh), "submesh": "",
                 "center": False}
 
 

@@ -131,8 +131,8 @@ class LiveTopics:
             topic.plotters.discard(client.number)
             self._remove_client(topic, client)
 
-    def viewed(self, client: Client, name: str) -> None:
-        """A page has shown what it was sent of a topic."""
+    def mark_shown(self, client: Client, name: str) -> None:
+        """Send the next message of a topic to a page that has shown the one before."""
         topic = self._topics.get(name)
         if topic is not None:
             topic.unshown.discard(client.number)

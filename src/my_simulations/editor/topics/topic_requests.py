@@ -46,7 +46,7 @@ class TopicRequests:
         self._pool.shutdown(wait=False)
 
     async def _viewed(self, client: Client, message: Dict[str, Any]) -> None:
-        self.live.viewed(client, message["topic"])
+        self.live.mark_shown(client, message["topic"])
 
     async def _topics(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
         if self._source is None:

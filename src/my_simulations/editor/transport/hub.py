@@ -163,9 +163,9 @@ class Hub:
         self._sequence = -1
         self._woken.set()
 
-    def add_listeners(self, more: int) -> None:
-        """So many more (fewer) want poses."""
-        self._listeners += more
+    def count_pose_readers(self, change: int) -> None:
+        """Add to the number of clients that read poses; negative for fewer."""
+        self._listeners += change
         self._request_rates()
         self._sequence = -1
         self._woken.set()

@@ -59,7 +59,7 @@ class Sockets:
         self._count += 1
         client = Client(self._count, socket)
         self._hub.clients[client.number] = client
-        self._hub.add_listeners(1)
+        self._hub.count_pose_readers(1)
         pump = asyncio.ensure_future(client.pump())
         tasks: "set[asyncio.Future[None]]" = set()
         try:
@@ -77,7 +77,7 @@ class Sockets:
         finally:
             pump.cancel()
             del self._hub.clients[client.number]
-            self._hub.add_listeners(-1)
+            self._hub.count_pose_readers(-1)
             try:
                 # What came with the farewell is carried out, before what its client held falls.
                 if tasks:

@@ -121,7 +121,7 @@ def _figure(path: str, _changed_at: Tuple[int, int]) -> Optional[FigureFile]:
     with _as_input_error():
         found = _Reader(root, os.path.dirname(path)).figure()
     if found is not None:
-        found.tree.release()
+        found.tree.release_xml()
     return found
 
 
@@ -134,7 +134,7 @@ def _moves(path: str, _changed_at: Tuple[int, int]) -> Optional[Movement]:
         tree = NodeTree(root)
         clip = clip_of(root, tree)
         unit = unit_of(root)
-    tree.release()
+    tree.release_xml()
     return None if clip is None else Movement(tree, clip, unit)
 
 

@@ -212,14 +212,14 @@ def _reader(path: str, extension: str) -> Optional[Reader]:
         return read_collada
     from .obj import read_obj
     from .stl import read_stl
-    from .trimesh_formats import extensions, read_other
+    from .trimesh_formats import extensions, read_with_trimesh
 
     if extension in (".stl", ".stla", ".stlb"):
         return read_stl
     if extension == ".obj":
         return read_obj
     if extension in extensions():
-        return functools.partial(read_other, path=path)
+        return functools.partial(read_with_trimesh, path=path)
     return None
 
 

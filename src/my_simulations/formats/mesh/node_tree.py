@@ -102,8 +102,8 @@ class NodeTree(Bones):
         self.rest: Array = np.array([local_matrix(placings_of(element))
                                      for element in self.elements]).reshape(-1, 4, 4)
 
-    def release(self) -> None:
-        """Give the XML back, which is most of what this takes."""
+    def release_xml(self) -> None:
+        """Free the XML, which takes most of the memory."""
         self.elements.clear()
         self.by_id.clear()
 

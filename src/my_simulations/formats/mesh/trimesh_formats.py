@@ -20,7 +20,7 @@ def extensions() -> Set[str]:
     return {f".{name}" for name in mesh_formats()} - {".bz2", ".zip", ".zae", ".tar.gz", ".tar.bz2"}
 
 
-def read_other(data: bytes, path: str) -> List[MeshPart]:
+def read_with_trimesh(data: bytes, path: str) -> List[MeshPart]:
     """The parts of a file in another format, in its declared unit, else in metres.
 
     The extension of `path` gives the format; a .gltf file finds its buffers beside it. Raises

@@ -50,7 +50,7 @@ class GazeboRosControl(Plugin):
         period = p.number("controlPeriod", 0.0)
         self._hold = InitialHold(context, self._hardware, lambda: self._manager.claimed)
         self._manager = ControllerManager(context, self._hardware, period,
-                                          claimed=self._hold.limit)
+                                          claimed=self._hold.shorten_wait)
         self._stopped = False
         topic = p.text("eStopTopic")
         if topic:
@@ -130,8 +130,8 @@ class InitialHold:
         self._hardware.hold()
         self._wait(PATIENCE_S)
 
-    def limit(self) -> None:
-        """A controller has started: wait a little for others."""
+    def shorten_wait(self) -> None:
+        """Wait only a little longer for other controllers, after the first has started."""
         if not self._limited:
             self._limited = True
             self._wait(FURTHER_S)

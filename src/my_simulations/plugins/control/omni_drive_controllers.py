@@ -110,7 +110,7 @@ class WheelController(Controller):
             turned, rate = wheel.steering.advance(self._deltas[n], self._rates[n], dt, steps)
             rates.append(rate)
             steered.append(clamp(turned / dt, wheel.most_steer))
-            driven.append(clamp(target.rate + steered[n] * wheel.induced, wheel.most_drive))
+            driven.append(clamp(target.rate + steered[n] * wheel.drive_per_steer, wheel.most_drive))
             self._steers[n].command(steered[n])
             self._drives[n].command(driven[n])
         self._rates, self._steered, self._driven = rates, steered, driven

@@ -100,7 +100,7 @@ class OmniWheel:
         return Corner(self.x, self.y, -self.offset)
 
     @property
-    def induced(self) -> float:
+    def drive_per_steer(self) -> float:
         """Rotation of the drive joint per rotation of the steering joint if the base stands."""
         return self.offset / self.radius - self.coupling
 
@@ -130,7 +130,7 @@ def base_displacement(wheels: Sequence[OmniWheel], before: Sequence[WheelState],
     rolled = []
     for wheel, then, state in zip(wheels, before, now):
         steered = state.angle - then.angle
-        way = wheel.radius * (state.turned - then.turned - wheel.induced * steered)
+        way = wheel.radius * (state.turned - then.turned - wheel.drive_per_steer * steered)
         rolled.append((then.angle + steered / 2.0, way))
     return fitted_motion([wheel.corner for wheel in wheels], rolled)
 

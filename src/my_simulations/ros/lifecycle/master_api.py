@@ -77,8 +77,8 @@ def fault_of(master: str, caller: str) -> str:
     return ""
 
 
-def wait(master: str, caller: str, stop: threading.Event, say: Callable[[str], None],
-         deadline: Optional[float] = None) -> bool:
+def wait_for_master(master: str, caller: str, stop: threading.Event, say: Callable[[str], None],
+                    deadline: Optional[float] = None) -> bool:
     """Wait until the master responds.
 
     Args:

@@ -231,7 +231,7 @@ class Server:
     def _may_register(self, loader: WorldLoader) -> bool:
         """Whether a master without a running node of our name exists; prints why not."""
         try:
-            there = master_api.wait(self._master, self._name, self._settled, self._say)
+            there = master_api.wait_for_master(self._master, self._name, self._settled, self._say)
             if not there:
                 self._report_world_errors(loader)
                 return False

@@ -148,14 +148,14 @@ class RosGraph:
     def _reuse(self, name: str) -> Callable[[Callable[[], Any]], None]:
         """End the removal of a name that is used again; return what defers the next removal."""
         resolved = rospy.resolve_name(name)
-        self._closing.finish(resolved)
+        self._closing.close_now(resolved)
 
         def defer(close: Callable[[], Any]) -> None:
             def remove() -> None:
                 with contextlib.suppress(OSError):  # the master has gone: nothing is registered
                     close()
 
-            self._closing.put(resolved, remove)
+            self._closing.close_soon(resolved, remove)
 
         return defer
 
@@ -220,7 +220,7 @@ class DeferredClosing:
         self._current = ""
         self._is_running = False
 
-    def put(self, name: str, close: Callable[[], None]) -> None:
+    def close_soon(self, name: str, close: Callable[[], None]) -> None:
         """Make a call soon, in another thread."""
         with self._changed:
             self._waiting.setdefault(name, []).append(close)
@@ -228,8 +228,8 @@ class DeferredClosing:
                 self._is_running = True
                 threading.Thread(target=self._run, name="graph-closing", daemon=True).start()
 
-    def finish(self, name: str) -> None:
-        """Return after all calls for a name, before the name is used again."""
+    def close_now(self, name: str) -> None:
+        """Make the calls for a name that are still due, before the name is used again."""
         with self._changed:
             self._changed.wait_for(lambda: self._current != name)
             calls = self._waiting.pop(name, [])
