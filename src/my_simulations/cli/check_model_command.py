@@ -200,10 +200,15 @@ def _show(file: str, loaded: Optional[Loaded], issues: Sequence[Issue]) -> None:
     for issue in issues:
         print(issue)
     found = counts(loaded)
-    collisions = sum(found["collisions"].values())
-    faults = len(errors_of(issues))
-    warned = sum(issue.severity is Severity.WARNING for issue in issues)
-    print(f"{file}: {faults} errors, {warned} warnings; {found['models']} models, "
-          f"{found['links']} links, {found['joints']} joints, {collisions} collisions, "
-          f"{found['visuals']} visuals, {found['lights']} lights, {found['plugins']} plugins",
-          flush=True)
+    warnings = sum(issue.severity is Severity.WARNING for issue in issues)
+    faults = [_counted(len(errors_of(issues)), "error"), _counted(warnings, "warning")]
+    content = [_counted(found["models"], "model"), _counted(found["links"], "link"),
+               _counted(found["joints"], "joint"),
+               _counted(sum(found["collisions"].values()), "collision"),
+               _counted(found["visuals"], "visual"), _counted(found["lights"], "light"),
+               _counted(found["plugins"], "plugin")]
+    print(f"{file}: {', '.join(faults)}; {', '.join(content)}", flush=True)
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"

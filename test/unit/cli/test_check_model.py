@@ -330,3 +330,12 @@ def test_a_world_is_found_by_its_name_and_a_similar_one_is_named(capsys, tmp_pat
     assert main(["check_model", "lab_rom.world"]) == 1
     out = capsys.readouterr().out
     assert "lab_rom.world: error: cannot be read" in out and "did you mean lab_room.world" in out
+
+
+def test_the_summary_says_one_error_in_the_singular(capsys, tmp_path):
+    path = tmp_path / "one.sdf"
+    path.write_text(sdf("<model name='m'><link name='l'/><joint name='j' type='fixed'>"
+                        "<parent>l</parent><child>lost</child></joint></model>", "1.7"))
+    assert main(["check_model", "--strict", str(path)]) == 1
+    summary = capsys.readouterr().out.splitlines()[-1]
+    assert ": 1 error, 0 warnings; 1 model, 1 link, " in summary, summary
