@@ -180,6 +180,16 @@ def words(content):
     return re.split(number, text), [float(found) for found in re.findall(number, text)]
 
 
+@pytest.mark.parametrize("name, scale, size", [
+    ("jersey_barrier", 1.0, (4.066, 0.812, 1.143)),
+    ("speed_limit_sign", 10.0, (0.64, 0.28, 2.36)),
+])
+def test_a_mesh_that_worlds_saved_by_gazebo_name_has_the_size_that_they_expect(name, scale, size):
+    path = ROOT / "models" / name / "meshes" / f"{name}.dae"
+    mesh = load_mesh(Mesh(str(path), scale=(scale, scale, scale), path=str(path)))
+    np.testing.assert_allclose(np.ptp(mesh.vertices, axis=0), size, atol=2e-3)
+
+
 def test_the_models_are_what_their_descriptions_make():
     for path, made in generated_models().items():
         (text, numbers), (made_text, made_numbers) = map(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Dict, List, Optional, Tuple
 
 import numpy as np
@@ -63,6 +63,7 @@ class Model:
         kind: a word that the Insert tab finds the model by, after the description.
         mass: kg; None for a static model.
         friction: coefficient mu.
+        mesh_scale: size of the model relative to its mesh file.
     """
 
     name: str
@@ -71,6 +72,7 @@ class Model:
     mass: Optional[float] = None
     friction: float = 0.6
     kind: str = ""
+    mesh_scale: float = 1.0
     parts: List[Tuple[str, Mesh]] = field(default_factory=list)
     collisions: List[Collision] = field(default_factory=list)
 
@@ -146,11 +148,14 @@ class Model:
                 (
                     color,
                     COLORS[color],
-                    joined([mesh for other, mesh in self.parts if other == color]),
+                    self._in_file(joined([mesh for other, mesh in self.parts if other == color])),
                 )
                 for color in colors
             ],
         )
+
+    def _in_file(self, mesh: Mesh) -> Mesh:
+        return replace(mesh, vertices=mesh.vertices / self.mesh_scale)
 
     def _config(self) -> str:
         return f"""<?xml version="1.0" ?>
@@ -169,12 +174,15 @@ class Model:
         static = "    <static>true</static>\n" if self.mass is None else ""
         inertial = _inertial(self.inertial()) if self.mass is not None else ""
         collisions = "".join(map(self._collision, self.collisions))
+        scale = (
+            "" if self.mesh_scale == 1.0 else f"<scale>{_numbers((self.mesh_scale,) * 3)}</scale>"
+        )
         return f"""<?xml version="1.0" ?>
 <sdf version="1.6">
   <model name="{self.name}">
 {static}    <link name="link">
 {inertial}{collisions}      <visual name="visual">
-        <geometry><mesh><uri>model://{self.name}/meshes/{self.name}.dae</uri></mesh></geometry>
+        <geometry><mesh><uri>model://{self.name}/meshes/{self.name}.dae</uri>{scale}</mesh></geometry>
       </visual>
     </link>
   </model>

@@ -32,33 +32,36 @@ def models() -> Iterator[Model]:
 
 
 def jersey_barrier() -> Model:
+    """The size is that of Gazebo's model: saved worlds name its mesh beside their collisions."""
     model = Model(
         "jersey_barrier",
         "Jersey barrier",
-        "A concrete barrier of 2 x 0.6 x 0.8 m, 900 kg.",
-        900,
+        "A concrete barrier of 4.07 x 0.81 x 1.14 m. It is static.",
+        None,
         0.7,
     )
+    length = 4.066
     profile = [
-        (-0.3, 0),
-        (0.3, 0),
-        (0.3, 0.08),
-        (0.16, 0.3),
-        (0.09, 0.8),
-        (-0.09, 0.8),
-        (-0.16, 0.3),
-        (-0.3, 0.08),
+        (-0.406, 0),
+        (0.406, 0),
+        (0.406, 0.065),
+        (0.2, 0.33),
+        (0.13, 1.143),
+        (-0.13, 1.143),
+        (-0.2, 0.33),
+        (-0.406, 0.065),
     ]
-    model.look("concrete", standing(plate(profile, 2.0, 0.012)).turned(0, 0, math.pi / 2))
-    for x in (0.6, -0.6):
+    model.look("concrete", standing(plate(profile, length, 0.012)).turned(0, 0, math.pi / 2))
+    for x in (1.4, -1.4):
         model.look(
             "orange",
-            block((0.3, 0.002, 0.1), (x, 0.1275, 0.55), 0.0),
-            block((0.3, 0.002, 0.1), (x, -0.1275, 0.55), 0.0),
+            block((0.4, 0.002, 0.14), (x, 0.1545, 0.75), 0.0),
+            block((0.4, 0.002, 0.14), (x, -0.1545, 0.75), 0.0),
         )
-    model.box((2.0, 0.6, 0.08), (0, 0, 0.04))
-    model.box((2.0, 0.4, 0.22), (0, 0, 0.19))
-    model.box((2.0, 0.25, 0.5), (0, 0, 0.55))
+    model.box((length, 0.812, 0.065), (0, 0, 0.0325))
+    model.box((length, 0.65, 0.1), (0, 0, 0.115))
+    model.box((length, 0.5, 0.12), (0, 0, 0.225))
+    model.box((length, 0.306, 0.858), (0, 0, 0.714))
     return model
 
 

@@ -1,4 +1,4 @@
-"""Signs and lamps of streets and halls. They face +x."""
+"""Signs and lamps of streets and halls. They face +x, unless their docstring differs."""
 
 from __future__ import annotations
 
@@ -114,14 +114,21 @@ def yield_sign() -> Model:
 
 
 def speed_limit_sign() -> Model:
+    """It faces -y and its mesh is a tenth of it, as in Gazebo: saved worlds scale that file."""
     model = Model(
-        "speed_limit_sign", "Speed limit 30", "A speed limit of 30 km/h on a post. It is static."
+        "speed_limit_sign",
+        "Speed limit 30",
+        "A speed limit of 30 km/h on a post. It is static.",
+        mesh_scale=10.0,
     )
-    post(model, 2.3)
-    model.look("red", facing(regular(32, 0.32), 0.015, 0.045, 2.1))
-    model.look("white", facing(regular(32, 0.25), 0.004, 0.049, 2.1))
-    model.look("black", *lettering("30", 0.24, 0.051, 2.1))
-    board(model, 0.6, 2.1)
+    post(model, 2.06)
+    for color, meshes in (
+        ("red", [facing(regular(32, 0.32), 0.015, 0.045, 2.04)]),
+        ("white", [facing(regular(32, 0.25), 0.004, 0.049, 2.04)]),
+        ("black", lettering("30", 0.24, 0.051, 2.04)),
+    ):
+        model.look(color, *(mesh.turned(0, 0, -math.pi / 2) for mesh in meshes))
+    model.box((0.6, 0.02, 0.6), (0, -0.04, 2.04))
     return model
 
 
