@@ -10,6 +10,7 @@ from ..errors import CommandError
 from ..geometry import compose, inverse
 from .entity import Entity
 from .model_connections import ModelConnections
+from .nested_models import NestedModel
 from .session import Session
 
 
@@ -52,6 +53,13 @@ class ConnectedModels:
         """The flattened description of a model. Raises UnknownEntityError."""
         with self._session.registry_lock:
             return self._session.registry.model(name).model
+
+    def nested(self, name: str) -> Optional[NestedModel]:
+        """The nested model of a scoped or plain name; None for another or a top-level model."""
+        with self._session.registry_lock:
+            registry = self._session.registry
+            found = None if name in registry else registry.nested_model(name)
+        return None if found is None else found[1]
 
     def set_extra(self, name: str, extra: List[str]) -> None:
         """Replace the kept XML of a model, which has no effect on the simulation.

@@ -15,6 +15,7 @@ from ..engine.commands import LinkState, ModelState
 from ..engine.ring import Snapshot
 from ..engine.ring_rows import AXES, axis_rows, row_name
 from ..geometry import IDENTITY, STILL, Pose, Twist, compose, inverse
+from .nested_models import NestedModel, find_nested_models
 
 
 @dataclass
@@ -72,6 +73,11 @@ class Entity:
         return {row_name(joint.name, number): (joint, number)
                 for joint in reversed(self.model.joints)
                 for number in range(max(1, AXES.get(joint.type, 0)))}
+
+    @cached_property
+    def nested(self) -> Dict[str, NestedModel]:
+        """Its nested models by scoped name within the model."""
+        return find_nested_models(self.model)
 
     @cached_property
     def scoped_links(self) -> Tuple[str, ...]:

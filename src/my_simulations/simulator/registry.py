@@ -24,6 +24,7 @@ from ..engine.ring import RingReader, Snapshot
 from ..errors import CommandError
 from ..geometry import IDENTITY, STILL, Pose, Twist, compose
 from .entity import Entity
+from .nested_models import NestedModel
 from .order_slot import OrderSlot
 
 _FEW = 3
@@ -187,6 +188,15 @@ class Registry:
             raise UnknownEntityError(f"unknown model '{name}'" + self._suggest_models(name))
         return found
 
+    def nested_model(self, name: str) -> Optional[Tuple[Entity, NestedModel]]:
+        """A nested model by scoped name or by plain name (the first in the world), else None."""
+        outermost, rest = split_scoped(name, self._entities.__contains__)
+        if outermost:
+            entity = self._entities[outermost]
+            return (entity, entity.nested[rest]) if rest in entity.nested else None
+        return next(((entity, nested) for entity in self._entities.values()
+                     for nested in entity.nested.values() if nested.model.name == name), None)
+
     def link(self, name: str) -> Tuple[Entity, int]:
         """A link by `model::link` or by its plain name (the first in the world).
 
@@ -240,7 +250,8 @@ class Registry:
     def frame(self, name: str) -> Optional[ReferenceFrame]:
         """Resolve the name of a reference frame; None for the world frame.
 
-        Entities are searched first (models, links, collisions, lights), then the literals.
+        Entities are searched first (models, links, collisions, nested models, lights), then the
+        literals.
         Raises UnknownFrameError.
         """
         entity = self._entities.get(name)
@@ -254,6 +265,9 @@ class Registry:
         collision = self._collision(name)
         if collision is not None:
             return collision
+        nested = self.nested_model(name)
+        if nested is not None:
+            return nested_frame(*nested)
         for light in self._lights():
             if light.name == name:
                 return ReferenceFrame(-1, light.pose)
@@ -324,6 +338,11 @@ class Registry:
         return _suggest_scoped(name, {
             entity.model.name: [joint.name for joint in entity.model.joints]
             for entity in self._entities.values()})
+
+
+def nested_frame(entity: Entity, nested: NestedModel) -> ReferenceFrame:
+    """The frame of a nested model."""
+    return ReferenceFrame(entity.first_link_row + nested.frame_link, nested.link_from_model)
 
 
 def _suggest_names(name: str, known: Iterable[str]) -> str:

@@ -24,6 +24,7 @@ from ..geometry import (
     Twist,
     compose,
     conjugate,
+    inverse,
     multiply,
     normalised,
     pose_is_finite,
@@ -32,7 +33,8 @@ from ..geometry import (
 )
 from .clock import SimClock
 from .entity import Entity
-from .registry import ReferenceFrame
+from .nested_models import NestedModel
+from .registry import ReferenceFrame, nested_frame
 from .session import Session
 from .world_state import WorldState
 from .wrenches import Wrenches
@@ -53,13 +55,17 @@ class States:
     # -- reading -----------------------------------------------------------------------------------
 
     def model_state(self, name: str, frame: str = "") -> Tuple[Pose, Twist]:
-        """Pose and twist of a model frame in `frame` (see `Registry.frame`).
+        """Pose and twist of a model frame, also a nested one's, in `frame` (see `Registry.frame`).
 
         Raises UnknownEntityError, UnknownFrameError.
         """
         session = self._session
         session.await_posted()
         with session.registry_lock:
+            nested = None if name in session.registry else session.registry.nested_model(name)
+            if nested is not None:
+                anchor, snapshot = session.registry.frame(frame), session.snapshot()
+                return relative_state(nested_frame(*nested).state(snapshot), anchor, snapshot)
             entity = session.registry.model(name)
             anchor = session.registry.frame(frame)
             if anchor is None and entity.link_names:
@@ -147,13 +153,17 @@ class States:
     def set_model_state(self, name: str, pose: Pose, twist: Twist, frame: str = "") -> None:
         """Move a model; all its links get the rigid body's velocity. Raises CommandError.
 
-        The engine does so between its steps: this method does not wait for that, what reads states
-        does.
+        A nested model can be moved if it has one link. The engine does so between its steps: this
+        method does not wait for that, what reads states does.
         """
         session = self._session
         pose = check_state(pose, twist)
         with session.registry_lock:
-            entity = session.registry.model(name)
+            nested = None if name in session.registry else session.registry.nested_model(name)
+            entity = session.registry.model(name) if nested is None else nested[0]
+        if nested is not None:
+            self._set_nested_state(name, *nested, pose, twist, frame)
+            return
         if not entity.link_names:
             session.await_posted()
             with session.registry_lock:
@@ -170,6 +180,14 @@ class States:
             return SetModelState(found.model_id, at, speed, reference, self._owner(reference))
 
         session.post(look_up)
+
+    def _set_nested_state(self, name: str, entity: Entity, nested: NestedModel, pose: Pose,
+                          twist: Twist, frame: str) -> None:
+        if len(nested.links) != 1:
+            raise CommandError(f"'{name}' is a nested model of {len(nested.links)} links; move its "
+                               f"links or the model '{entity.model.name}'")
+        self.set_link_state(entity.scoped_links[nested.frame_link],
+                            compose(pose, inverse(nested.link_from_model)), twist, frame)
 
     def set_link_state(self, name: str, pose: Pose, twist: Twist, frame: str = "") -> None:
         """Move a link (see `engine.commands.SetLinkState`). Raises CommandError."""

@@ -41,7 +41,8 @@ class StateServices:
         """Pose and twist of a model in a frame; `seq` counts calls per model (Gazebo behaviour)."""
         name, frame = request.model_name, request.relative_entity_name
         with gazebo_prefix("model does not exist"):
-            self._simulator.models.get(name)
+            if self._simulator.models.nested(name) is None:
+                self._simulator.models.get(name)
         with self._lock:
             self._calls[name] += 1
             response.header.seq = self._calls[name]

@@ -6,6 +6,7 @@ from typing import Any, Callable, List, Optional
 
 import rospy
 
+from ...description.flatten import flatten_model
 from ...description.scoped_names import SCOPE
 from ...errors import CommandError
 from ...resources.resolver import Resolver
@@ -29,8 +30,13 @@ class WorldServices:
 
     def get_model(self, request: Any, response: Any) -> str:
         """Links, collisions and joints of a model, by unscoped names (Gazebo behaviour)."""
-        with gazebo_prefix("model does not exist"):
-            model = self._simulator.models.get(request.model_name)
+        nested = self._simulator.models.nested(request.model_name)
+        if nested is not None:
+            response.parent_model_name = nested.parent
+            model = flatten_model(nested.model)
+        else:
+            with gazebo_prefix("model does not exist"):
+                model = self._simulator.models.get(request.model_name)
         links = [link for link in model.links if SCOPE not in link.name]
         response.canonical_body_name = model.canonical_link or (links[0].name if links else "")
         response.body_names = [link.name for link in links]
