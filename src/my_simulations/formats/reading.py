@@ -254,6 +254,11 @@ def _first_entity(root: Any, source: Source) -> Entity:
             elif element.tag == "light":
                 found = read_light(element, source)
             elif element.tag == "include":
+                if element.find("pose") is None:
+                    # Gazebo writes the pose of the request into the include, which replaces the
+                    # pose in the model's file.
+                    element.append(element.makeelement("pose"))
+                    element[-1].text = "0 0 0 0 0 0"
                 found = read_include(element, source, read_model)
                 if found is None:
                     raise InputError(source.log.issues)

@@ -110,3 +110,15 @@ def test_deprecated_attributes_mean_the_same_and_are_logged_once(services):
 def test_only_urdf_goes_to_the_urdf_service(services):
     with pytest.raises(CommandError, match="spawn_sdf_model"):
         services.spawn.spawn_urdf(request(), None)
+
+
+@pytest.mark.parametrize("pose, height", [("", 1.0), ("<pose>0 0 2 0 0 0</pose>", 3.0)])
+def test_the_pose_of_an_included_models_file_is_replaced(services, tmp_path, pose, height):
+    (tmp_path / "raised").mkdir()
+    (tmp_path / "raised" / "model.sdf").write_text(
+        BOX.format("").replace("<link", "<pose>0 0 0.5 0 0 0</pose><link"))
+    text = f"<sdf version='1.6'><world name='w'><include><uri>{tmp_path}/raised</uri>{pose}"
+    asked = request(model_xml=text + "</include></world></sdf>")
+    asked.initial_pose.position.z = 1.0
+    services.spawn.spawn_sdf(asked, None)
+    assert services.simulator.states.model_state("a")[0].position == (0.0, 0.0, height)
