@@ -14,6 +14,7 @@ import os
 import re
 from typing import Callable, Dict, Iterable, List, Mapping, Optional, Type
 
+from ..description.plugin import GRIPPER_LIBRARY
 from ..errors import SimulationError
 from .base import Plugin
 from .context import PluginError
@@ -121,6 +122,7 @@ BUILT_IN: Mapping[str, str] = {
     "librotors_gazebo_pressure_plugin.so": "flight.rotors_sensors:RotorsPressure",
     "librotors_gazebo_gps_plugin.so": "flight.rotors_sensors:RotorsGps",
     "librotors_gazebo_wind_plugin.so": "flight.rotors_wind:RotorsWind",
+    GRIPPER_LIBRARY: "gripping.sdf_gripper:SdfGripper",
     "libmy_simulations_segmentation_camera.so": "sensors.segmentation:SegmentationCamera",
     "libmy_simulations_gps.so": "sensors.environment:GpsSensor",
     "libmy_simulations_magnetometer.so": "sensors.environment:MagnetometerSensor",

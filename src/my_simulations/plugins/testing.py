@@ -297,6 +297,9 @@ class FakeContext(FakeGraph):
     def detach(self, name: str) -> bool:
         return self.attached.pop(name, None) is not None
 
+    def is_attached(self, name: str) -> bool:
+        return name in self.attached
+
     def efforts(self, joints: Sequence[str]) -> List[float]:
         return [self.joint(name).effort for name in joints]
 

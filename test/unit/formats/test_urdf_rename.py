@@ -49,7 +49,7 @@ def test_a_contact_sensor_names_the_collisions_by_their_new_names():
 
 def test_a_gripper_names_the_link_that_stands_for_its_palm():
     model = kept("<gripper name='g'><palm_link>hand</palm_link></gripper>")
-    assert any("<palm_link>base<" in xml for xml in model.extra)
+    assert any("<palm_link>base<" in plugin.xml for plugin in model.plugins)
 
 
 def test_a_robot_without_lumped_links_keeps_its_texts():

@@ -310,13 +310,23 @@ def test_a_relative_mesh_becomes_a_path_and_a_model_uri_stays(tmp_path):
     assert found == [str(tmp_path / "part.stl"), uris[1]]
 
 
+def test_a_gripper_is_read_with_its_line_and_written_once(tmp_path):
+    path = tmp_path / "m.sdf"
+    path.write_text(sdf("<model name='m'><link name='l'/>\n<gripper name='g'>"
+                        "<palm_link>l</palm_link></gripper></model>", "1.7"))
+    model, issues = read_file(str(path), Resolver([]))
+    (gripper,) = model.plugins
+    assert (gripper.name, gripper.line, issues) == ("g", 2, []) and not model.extra
+    assert [one.findtext("palm_link") for one in written(model).iter("gripper")] == ["l"]
+
+
 def test_every_part_of_a_table_has_a_writer():
     """What the reader has a reader for, the writer writes."""
     known = {name for name in dir(_Writer) if not name.startswith("_")} | {
         name.rpartition("write_")[2] for module in (surroundings_elements, entities,
                                                     state_element)
         for name in dir(module)}
-    aside = {"include", "geometry", "xyz", "axis2", "plugin",
+    aside = {"include", "geometry", "xyz", "axis2", "plugin", "gripper",
              "population", "placement_frame", "screw_thread_pitch"}  # expanded or converted
     for table in tables():
         parts = {tag for tag, entry in table.children.items()

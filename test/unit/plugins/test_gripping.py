@@ -137,6 +137,28 @@ def test_a_grip_whose_contacts_flicker_holds(gripper):
     assert gripper.attached
 
 
+def test_an_object_that_was_deleted_and_spawned_again_is_held_again(gripper):
+    """The joint ended with the first object, and no update found its model missing."""
+    gripper.touching = squeezed()
+    gripper.advance(0.4)
+    gripper.detach("robot::arm::grasp")
+    gripper.advance(0.4)
+    assert gripper.attached
+
+
+def test_an_object_that_is_deleted_in_the_moment_of_the_grasp_is_not_held(gripper):
+    def refuse(name, parent, child):
+        raise PluginError(f"there is no link '{child}'")
+
+    gripper.touching, attach = squeezed(), gripper.attach
+    gripper.attach = refuse
+    gripper.advance(0.4)
+    assert "cannot hold cube::link" in gripper.log_messages[-1]
+    gripper.attach = attach
+    gripper.advance(0.1)
+    assert gripper.attached
+
+
 def test_what_is_deleted_between_two_looks_is_not_held(gripper):
     gripper.touching = squeezed()
     gripper.advance(0.35)

@@ -25,7 +25,7 @@ from .link import LinkReader, free_name, must_be_static, relative_to
 from .model_flags import apply_include_flags, first_link, own_flags
 from .model_tables import FRAME, MODEL
 from .parsed_model import ParsedModel, add_frames_inside
-from .plugin import read_plugin
+from .plugin import read_gripper, read_plugin
 
 ROOT = "__model__"
 DEEPEST = 50
@@ -88,6 +88,7 @@ class _ModelReader:
                                        placement)
         static = model.static or self._outer_static
         model.plugins = [read_plugin(plugin, source) for plugin in found.get("plugin", ())]
+        model.plugins += [read_gripper(gripper, source) for gripper in found.get("gripper", ())]
         model.plugins += changes.plugins
         model.links = self._links.read_all(found.get("link", ()), static)
         self._force_static_if_needed(model, static)

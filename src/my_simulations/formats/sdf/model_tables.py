@@ -228,7 +228,7 @@ MODEL = Table("model", Model, {
     "link": Part(), "joint": Part(), "model": Part("1.5"), "include": Part("1.4"),
     "frame": Part("1.5", kept=True), "plugin": Part(use=PLUGINS),
     "enable_wind": Value("enable_wind", BOOL, use=PLUGINS),
-    **kept("gripper", reported=True),
+    "gripper": Part(),
 }, attributes={"canonical_link": Value("canonical_link", TEXT, since="1.7")},
    known_attributes=("name", "placement_frame"))
 

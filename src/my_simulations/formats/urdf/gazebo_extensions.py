@@ -21,7 +21,7 @@ from ..sdf.collision_visual import fill_material
 from ..sdf.material_files import check_script
 from ..sdf.model_tables import COLLISION as SDF_COLLISION
 from ..sdf.model_tables import VISUAL as SDF_VISUAL
-from ..sdf.plugin import read_plugin
+from ..sdf.plugin import read_gripper, read_plugin
 from ..xml.binding import fill, set_value, to_xml
 from ..xml.source import FaultLevel, Source
 from ..xml.tables import Value
@@ -66,6 +66,8 @@ class Extensions:
                     model.plugins.append(read_plugin(child, self._source))
                 else:
                     self.joints.append(joint)
+            model.plugins += [read_gripper(child, self._source)
+                              for child in found.get("gripper", ())]
 
     def to_link(self, body: Body) -> None:
         """Apply extensions of a link and of its collisions and visuals; call before lumping."""

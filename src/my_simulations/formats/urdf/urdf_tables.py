@@ -158,7 +158,7 @@ GAZEBO_MODEL = Table("gazebo", Model, {
     **values_named(BOOL, "static", "self_collide", "allow_auto_disable"),
     "enable_wind": Value("enable_wind", BOOL, use=Use.PLUGINS),
     "plugin": Part(use=Use.PLUGINS), "link": Part(), "joint": Part(),
-    "gripper": Kept(reported=True),
+    "gripper": Part(),
     **kept("frame", "canonicalBody", "selfCollide", "turnGravityOff"),
 })
 """`<gazebo>` without a reference."""

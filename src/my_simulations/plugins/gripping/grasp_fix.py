@@ -10,31 +10,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Dict, List, NamedTuple, Tuple
+from typing import Dict, List, Tuple
 
-from ...geometry import Vec3, add, conjugate, dot, inverse, norm, rotate, scale, subtract, transform
+from ...geometry import Vec3, conjugate, dot, inverse, norm, rotate, scale, subtract, transform
 from ..base import Plugin
-from ..call_slot import CallSlot
 from ..context import PluginError
 from ..parameters import Parameters
+from .finger_contacts import FingerContacts, FingerForce
+from .palm_joint import PalmJoint
 
-_FORGET = 1e-6  # N: a contact that does not press
 _COUNTS = 10    # the usual most of counts
-_SAMPLE_HZ = 100.0  # of contacts between two updates
 _LEAST_RATIO = 0.3  # of two forces that oppose each other, and the smallest, N: gazebo_grasp_plugin
 _LEAST_FORCE = 1e-4
-
-
-class FingerForce(NamedTuple):
-    """Force of a finger on an object, N, world axes, and its point of application, m."""
-
-    finger: str
-    force: Vec3
-    point: Vec3  # in the finger's frame
-
-
-FingerForces = Dict[str, Dict[str, List[FingerForce]]]
-"""Sampled forces by the link of the object and the finger."""
 
 
 @dataclass
@@ -42,20 +29,25 @@ class Arm:
     """A gripper.
 
     Attributes:
-        pressed: since the last update.
+        joint: fixes an object to the palm.
+        contacts: those of the fingers.
         counts: updates with a grip minus updates without, by the scoped link name of the object.
-        held: the object that is fixed to the palm; "" for none.
         marks: of each finger that held it, where it touched (in the finger and in the palm frame)
             and which way it pressed (in the palm frame).
     """
 
     name: str
     palm: str
-    fingers: List[str]
-    pressed: FingerForces = field(default_factory=dict)
+    joint: PalmJoint
+    contacts: FingerContacts
     counts: Dict[str, int] = field(default_factory=dict)
-    held: str = ""
     marks: List[Tuple[str, Vec3, Vec3, Vec3]] = field(default_factory=list)
+
+    def clear(self) -> None:
+        """Hold nothing."""
+        self.contacts.clear()
+        self.joint.forget()
+        self.counts, self.marks = {}, []
 
 
 class GraspFix(Plugin):
@@ -65,10 +57,11 @@ class GraspFix(Plugin):
         context, p = self.context, self.context.parameters
         if not p.children("arm"):
             raise PluginError("it has no <arm>")
+        hertz = p.number("update_rate", 5.0)
         self._arms: List[Arm] = []
         for one in p.children("arm"):
             try:
-                self._arms.append(self._arm(one))
+                self._arms.append(self._arm(one, hertz))
             except PluginError as fault:
                 context.warn(f"{fault}; this <arm> does nothing")
         if not self._arms:
@@ -81,13 +74,9 @@ class GraspFix(Plugin):
         self._release = p.number("release_tolerance", 0.005)
         if p.flag("disable_collisions_on_attach", False):
             context.warn("<disable_collisions_on_attach> has no effect: held objects still collide")
-        hertz = p.number("update_rate", 5.0)
-        self._rare = 0.0 < hertz < _SAMPLE_HZ
-        self._samples = CallSlot()
-        self._step = -1
         context.every(hertz, self.update)
 
-    def _arm(self, p: Parameters) -> Arm:
+    def _arm(self, p: Parameters, hertz: float) -> Arm:
         name, palm = p.text("arm_name", "default_arm"), p.text("palm_link")
         named = [one for one in p.texts("gripper_link") if one]
         if not palm or not named:
@@ -104,67 +93,25 @@ class GraspFix(Plugin):
                 self.context.warn(f"arm '{name}': {fault}; this <gripper_link> does nothing")
         if not fingers:
             raise PluginError(f"arm '{name}' has no <gripper_link> that there is")
-        return Arm(name, palm, fingers)
+        return Arm(name, palm, PalmJoint(self.context, palm, f"{name}::grasp", f"arm '{name}'"),
+                   FingerContacts(self.context, fingers, hertz))
 
     def reset(self) -> None:
         """Clear the contacts and the held objects of all arms."""
         for arm in self._arms:
-            arm.pressed, arm.counts, arm.held, arm.marks = {}, {}, "", []
+            arm.clear()
 
     def update(self) -> None:
         """Evaluate the contacts of the last step and those sampled since the last update."""
-        self._sample()
-        self._sample_on(any(arm.pressed for arm in self._arms))
-        models = self.context.models()
         for arm in self._arms:
-            pressed, arm.pressed = arm.pressed, {}
-            if not arm.held:
-                self._count(arm, {name: [_mean(presses) for presses in by_finger.values()]
-                                  for name, by_finger in pressed.items()
-                                  if name.partition("::")[0] in models})
-            elif arm.held.partition("::")[0] not in models or self._has_opened(arm):
-                self._drop_object(arm)
-
-    def _sample_on(self, touches: bool) -> None:
-        """Start or stop the sampling of contacts between updates."""
-        if touches and self._rare and not self._samples.is_active:
-            self._samples.set(self.context.every(_SAMPLE_HZ, self._sample))
-        elif not touches:
-            self._samples.end()
-
-    def _sample(self) -> None:
-        """Take the contacts of the last step, once."""
-        if self.context.step == self._step:
-            return
-        self._step = self.context.step
-        free = [arm for arm in self._arms if not arm.held]
-        contacts = self.context.contacts() if free else []
-        for arm in free:
-            for name, by_finger in self._collect_presses(arm, contacts).items():
-                known = arm.pressed.setdefault(name, {})
-                for finger, press in by_finger.items():
-                    known.setdefault(finger, []).append(press)
-
-    def _collect_presses(self, arm: Arm, contacts: list) -> Dict[str, Dict[str, FingerForce]]:
-        """What presses movable links of other models, by their names and by those of fingers."""
-        prefix, models = f"{self.context.model}::", self.context.models()
-        parts = {self.context.scoped(name): name for name in arm.fingers}
-        found: Dict[str, Dict[str, FingerForce]] = {}
-        for one, other, contact in contacts:
-            for mine, theirs, sign in ((one, other, -1.0), (other, one, 1.0)):
-                if mine not in parts or theirs.startswith(prefix) or contact.force <= _FORGET:
-                    continue
-                model = models.get(theirs.partition("::")[0])
-                if model is None or model.static:
-                    continue
-                force = scale(add(scale(contact.normal, contact.force), contact.friction), sign)
-                before = found.setdefault(theirs, {}).get(mine)
-                if before is not None:
-                    force = add(before.force, force)
-                finger = self.context.link(parts[mine]).pose
-                found[theirs][mine] = FingerForce(parts[mine], force,
-                                            transform(inverse(finger), contact.position))
-        return found
+            if arm.joint.is_lost:
+                arm.clear()
+            if not arm.joint.held:
+                self._count(arm, {name: list(by_finger.values())
+                                  for name, by_finger in arm.contacts.take().items()})
+            elif self._has_opened(arm):
+                arm.joint.detach()
+                arm.clear()
 
     def _count(self, arm: Arm, pressed: Dict[str, List[FingerForce]]) -> None:
         gripped = {name for name, presses in pressed.items() if self._are_opposed(presses)}
@@ -189,9 +136,10 @@ class GraspFix(Plugin):
         return False
 
     def _hold(self, arm: Arm, name: str, presses: List[FingerForce]) -> None:
+        if not arm.joint.attach(name):
+            return
         context, palm = self.context, self.context.link(arm.palm).pose
-        context.attach(self._joint(arm), context.scoped(arm.palm), name)
-        arm.held = name
+        arm.contacts.clear()
         arm.marks = []
         for press in presses:
             if press.finger == arm.palm:
@@ -201,7 +149,6 @@ class GraspFix(Plugin):
                               transform(inverse(palm), transform(finger, press.point)),
                               rotate(conjugate(palm.orientation),
                                      scale(press.force, 1.0 / norm(press.force)))))
-        context.info(f"arm '{arm.name}' holds {name}")
 
     def _has_opened(self, arm: Arm) -> bool:
         """Return whether a finger has moved back from its contact, against its force."""
@@ -211,19 +158,3 @@ class GraspFix(Plugin):
             if dot(subtract(place, now), way) > self._release:
                 return True
         return False
-
-    def _drop_object(self, arm: Arm) -> None:
-        self.context.detach(self._joint(arm))
-        self.context.info(f"arm '{arm.name}' lets go of {arm.held}")
-        arm.counts, arm.held, arm.marks = {}, "", []
-
-    def _joint(self, arm: Arm) -> str:
-        return f"{self.context.scoped(arm.palm).rpartition('::')[0]}::{arm.name}::grasp"
-
-
-def _mean(presses: List[FingerForce]) -> FingerForce:
-    """Of one finger on one object."""
-    share, force, point = 1.0 / len(presses), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    for press in presses:
-        force, point = add(force, press.force), add(point, press.point)
-    return FingerForce(presses[0].finger, scale(force, share), scale(point, share))

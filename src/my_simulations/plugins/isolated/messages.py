@@ -26,9 +26,10 @@ PROPERTIES = frozenset((
 
 METHODS = frozenset((
     "transmissions", "move", "move_model", "hold", "scoped", "joint_spec", "set_wheel_slip",
-    "mimic", "models", "attach", "detach", "efforts", "set_joint_positions", "joint_wrench",
-    "contacts", "scan", "photograph", "sensors", "link_names", "lights", "set_light",
-    "set_material", "use_namespace", "message", "stamp", "parameter", "search_parameter"))
+    "mimic", "models", "attach", "detach", "is_attached", "efforts", "set_joint_positions",
+    "joint_wrench", "contacts", "scan", "photograph", "sensors", "link_names", "lights",
+    "set_light", "set_material", "use_namespace", "message", "stamp", "parameter",
+    "search_parameter"))
 """Methods of the context whose results are sent."""
 
 HANDLES = {"link": "link", "model_link": "link", "joint": "joint", "publish": "topic",
