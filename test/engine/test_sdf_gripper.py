@@ -121,6 +121,29 @@ def test_a_gripper_holds_again_after_a_reset(open_hand):
         hand.world.reset()
 
 
+GRASP_FIX = """<plugin name="fix" filename="libgazebo_grasp_fix.so"><arm><arm_name>arm</arm_name>
+<palm_link>palm</palm_link><gripper_link>left</gripper_link><gripper_link>right</gripper_link>
+</arm></plugin>"""
+
+
+@pytest.mark.parametrize("element", [GRIPPER, GRASP_FIX])
+def test_an_object_of_a_restored_state_is_held_and_released(open_hand, element):
+    hand = open_hand(0.002, HAND.replace(GRIPPER, element))
+    free = hand.world.save()
+    hand.close()
+    hand.lift(0.2)
+    held = hand.world.save()
+    for state in (held, free, held):
+        hand.world.restore(state)
+        if state is held:
+            hand.close(1.0)
+            hand.assert_holds()
+        else:
+            assert hand.height == pytest.approx(0.025, abs=0.001)
+        hand.open(2.5)
+        assert hand.height == pytest.approx(0.025, abs=0.001)
+
+
 def test_a_cube_that_is_removed_and_spawned_again_is_held(open_hand):
     hand = open_hand(0.002)
     hand.close()

@@ -337,8 +337,8 @@ class Context(Protocol):
     def detach(self, name: str) -> bool:
         """Remove the joint of `attach`; return whether it existed."""
 
-    def is_attached(self, name: str) -> bool:
-        """Return whether the joint of `attach` exists."""
+    def attached_link(self, name: str) -> str:
+        """Return the child link of the joint of `attach`; "" if there is no such joint."""
 
     def efforts(self, joints: Sequence[str]) -> List[float]:
         """Return the efforts of motors and servos in the last step, N m or N, from the engine."""

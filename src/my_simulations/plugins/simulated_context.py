@@ -355,8 +355,8 @@ class SimulatedContext(GraphUser):
         self._attached = [one for one in self._attached if one != name]
         return self.simulator.models.detach(name)
 
-    def is_attached(self, name: str) -> bool:
-        return bool(self.simulator.models.attachments(name))
+    def attached_link(self, name: str) -> str:
+        return next((joint.child for joint in self.simulator.models.attachments(name)), "")
 
     def efforts(self, joints: Sequence[str]) -> List[float]:
         return self._readings.efforts([self.joint(name).row for name in joints])

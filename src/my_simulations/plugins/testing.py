@@ -297,8 +297,8 @@ class FakeContext(FakeGraph):
     def detach(self, name: str) -> bool:
         return self.attached.pop(name, None) is not None
 
-    def is_attached(self, name: str) -> bool:
-        return name in self.attached
+    def attached_link(self, name: str) -> str:
+        return self.attached.get(name, ("", ""))[1]
 
     def efforts(self, joints: Sequence[str]) -> List[float]:
         return [self.joint(name).effort for name in joints]

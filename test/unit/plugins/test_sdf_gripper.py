@@ -141,11 +141,22 @@ def test_links_that_touch_in_turn_between_two_updates_hold(hand):
 
 def test_a_held_object_that_is_deleted_and_spawned_again_is_held_again(hand):
     hold(hand)
-    hand.detach("robot::hand::gripper")   # with the first object
+    updates(hand, 1)
+    hand.attached.clear()   # with the first object
     updates(hand, 2)
     assert not hand.attached
     updates(hand, 1)
     assert hand.attached
+
+
+def test_an_object_that_is_held_again_after_a_restore_is_released(hand):
+    hand.attached.update(JOINT)
+    hand.touching = touch("left", "right")
+    updates(hand, 5)
+    assert hand.attached
+    hand.touching = []
+    updates(hand, 4)
+    assert not hand.attached
 
 
 def test_a_reset_begins_to_count_again():

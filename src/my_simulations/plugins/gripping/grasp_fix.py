@@ -44,9 +44,8 @@ class Arm:
     marks: List[Tuple[str, Vec3, Vec3, Vec3]] = field(default_factory=list)
 
     def clear(self) -> None:
-        """Hold nothing."""
+        """Drop what is known of contacts."""
         self.contacts.clear()
-        self.joint.forget()
         self.counts, self.marks = {}, []
 
 
@@ -101,14 +100,21 @@ class GraspFix(Plugin):
         for arm in self._arms:
             arm.clear()
 
+    def clock_set(self) -> None:
+        """Find the contacts in the state that was restored."""
+        self.reset()
+
     def update(self) -> None:
         """Evaluate the contacts of the last step and those sampled since the last update."""
         for arm in self._arms:
-            if arm.joint.is_lost:
-                arm.clear()
-            if not arm.joint.held:
-                self._count(arm, {name: list(by_finger.values())
-                                  for name, by_finger in arm.contacts.take().items()})
+            held = arm.joint.held
+            if not held or not arm.marks:
+                pressed = {name: list(by_finger.values())
+                           for name, by_finger in arm.contacts.take().items()}
+                if held:   # since a saved state was restored
+                    self._mark_contacts(arm, pressed.get(held, []))
+                else:
+                    self._count(arm, pressed)
             elif self._has_opened(arm):
                 arm.joint.detach()
                 arm.clear()
@@ -136,11 +142,13 @@ class GraspFix(Plugin):
         return False
 
     def _hold(self, arm: Arm, name: str, presses: List[FingerForce]) -> None:
-        if not arm.joint.attach(name):
-            return
+        if arm.joint.attach(name):
+            arm.clear()
+            self._mark_contacts(arm, presses)
+
+    def _mark_contacts(self, arm: Arm, presses: List[FingerForce]) -> None:
+        """Store where the fingers touch the held object."""
         context, palm = self.context, self.context.link(arm.palm).pose
-        arm.contacts.clear()
-        arm.marks = []
         for press in presses:
             if press.finger == arm.palm:
                 continue

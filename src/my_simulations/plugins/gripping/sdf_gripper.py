@@ -49,24 +49,26 @@ class SdfGripper(Plugin):
         context.every(1.0 / _PERIOD_S, self.update)
 
     def reset(self) -> None:
-        """Hold nothing."""
+        """Begin to count again."""
         self._contacts.clear()
-        self._joint.forget()
         self._counts: Dict[str, int] = {}
         self._places: Dict[str, Vec3] = {}
         self._free_updates = 0   # in a row, without contacts with the held object
 
+    def clock_set(self) -> None:
+        """Begin to count again in the state that was restored."""
+        self.reset()
+
     def update(self) -> None:
         """Count the contacts since the last update; attach or release an object."""
-        if self._joint.is_lost:
-            self.reset()
         touched = {name for name, by_link in self._contacts.take().items()
                    if len(by_link) >= self._least_links}
-        if self._joint.held:
-            self._free_updates = 0 if self._joint.held in touched else self._free_updates + 1
+        held = self._joint.held
+        self._free_updates = self._free_updates + 1 if held and held not in touched else 0
+        if held:
+            self._counts, self._places = {}, {}
             if self._free_updates > self._detach_steps:
                 self._joint.detach()
-                self.reset()
             return
         counts = {name: count - 1 for name, count in self._counts.items() if count > 1}
         counts.update({name: self._counts.get(name, 0) + 1 for name in touched})

@@ -26,7 +26,7 @@ PROPERTIES = frozenset((
 
 METHODS = frozenset((
     "transmissions", "move", "move_model", "hold", "scoped", "joint_spec", "set_wheel_slip",
-    "mimic", "models", "attach", "detach", "is_attached", "efforts", "set_joint_positions",
+    "mimic", "models", "attach", "detach", "attached_link", "efforts", "set_joint_positions",
     "joint_wrench", "contacts", "scan", "photograph", "sensors", "link_names", "lights",
     "set_light", "set_material", "use_namespace", "message", "stamp", "parameter",
     "search_parameter"))
