@@ -108,6 +108,7 @@ BUILT_IN: Mapping[str, str] = {
     "libgazebo_ros_openni_kinect.so": "sensors.depth_camera:OpenniKinect",
     "libhector_gazebo_quadrotor_simple_controller.so":
         "flight.quadrotor_simple_controller:QuadrotorSimpleController",
+    "libhector_gazebo_quadrotor_state_controller.so": "flight.ardrone:ArdroneStateController",
     "libhector_gazebo_quadrotor_propulsion.so": "flight.quadrotor_propulsion:QuadrotorPropulsion",
     "libhector_gazebo_quadrotor_aerodynamics.so":
         "flight.quadrotor_propulsion:QuadrotorAerodynamics",

@@ -5,15 +5,20 @@ loops turn a velocity command in the axes of the heading into roll and pitch, an
 thrust along the z axis of the body and a torque. Where it differs: parameters named `<imuTopic>`
 and `<stateTopic>` are ignored, the loops always use the true state; a wrench is published while the
 motors are on; motors that the service `shutdown` has stopped need another command to start.
+
+tum_simulator has a controller of this name, too, for its AR.Drone. In a model with its state
+controller (ardrone.py), the flight state starts and stops the motors and determines their strength,
+and commands have noise.
 """
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Optional
 
 from ...geometry import (
     Quat,
     Vec3,
+    add,
     conjugate,
     dot,
     norm,
@@ -29,7 +34,9 @@ from ..finite_messages import subscribe_finite
 from ..sensors.hector_errors import rate_of
 from ..time_out import Stopwatch
 from .body_wrench import NO_WRENCH, hold_wrench
+from .command_noise import CommandNoise
 from .filtered_pid import FilteredPid
+from .flight_states import STRENGTHS, FlightStates, state_controller
 
 _TAKE_OFF = 0.1        # m/s: a command to rise this fast starts the motors
 _TOUCHED_DOWN = -1.0   # m: integral of the height error below which the body has landed
@@ -42,7 +49,6 @@ class QuadrotorSimpleController(Plugin):
         context, p = self.enter_namespace()
         self._link = context.link(p.text("bodyName"))
         self._most_force = p.number("maxForce", -1.0)
-        self._auto_engages = p.flag("autoEngage", True)
         self._roll, self._pitch = FilteredPid(p, "rollpitch"), FilteredPid(p, "rollpitch")
         self._yaw = FilteredPid(p, "yaw")
         self._x, self._y = FilteredPid(p, "velocityXY"), FilteredPid(p, "velocityXY")
@@ -56,10 +62,19 @@ class QuadrotorSimpleController(Plugin):
                 context.warn(f"<{name}> is ignored; the controller uses the true state")
         self._wrenches = context.publish(self._topic("wrench_topic", p.text(
             "wrenchTopic", "wrench_out")), "geometry_msgs/Wrench", 10)
+        self._timer = CallSlot()
+        self._strength = 1.0
+        self._begin()
+        drone = state_controller(context)
+        self._states: Optional[FlightStates] = None
+        self._noise: Optional[CommandNoise] = None
+        self._auto_engages = drone is None and p.flag("autoEngage", True)
+        if drone is not None:
+            self._noise = CommandNoise(context)
+            self._states = FlightStates(context, drone, self._follow_state)
+            return
         context.serve("engage", "std_srvs/Empty", lambda request, response: self._engage())
         context.serve("shutdown", "std_srvs/Empty", lambda request, response: self._shut_down())
-        self._timer = CallSlot()
-        self._begin()
 
     def _topic(self, parameter: str, default: str) -> str:
         return str(self.context.parameter(f"controller/{parameter}", default))
@@ -73,15 +88,33 @@ class QuadrotorSimpleController(Plugin):
         self._timer.end()
         self._begin()
         self._apply()
+        if self._states is not None and self._noise is not None:
+            self._states.reset()
+            self._noise.reset()
 
     def clock_set(self) -> None:
         self._stopwatch = Stopwatch(self.context)
+        if self._states is not None:
+            self._states.clock_set()
 
     def _receive(self, message: Any) -> None:
         self._command = (message.linear.x, message.linear.y, message.linear.z)
         self._yaw_rate = message.angular.z
+        if self._noise is not None:
+            x, y, z, yaw = self._noise.draw()
+            self._command = add(self._command, (x, y, z))
+            self._yaw_rate += yaw
         if self._auto_engages and not self._timer.is_active and self._command[2] > _TAKE_OFF:
             self._engage()
+
+    def _follow_state(self) -> None:
+        """Start or stop the motors of an AR.Drone."""
+        assert self._states is not None
+        self._strength = STRENGTHS[self._states.state]
+        if self._strength > 0.0:
+            self._engage()
+        else:
+            self._shut_down()
 
     def _engage(self) -> None:
         if self._timer.is_active:
@@ -89,7 +122,7 @@ class QuadrotorSimpleController(Plugin):
         for pid in (self._roll, self._pitch, self._yaw, self._x, self._y, self._z):
             pid.reset()
         self._velocity = self._link.twist.linear
-        self.clock_set()
+        self._last_ns = self.context.now_ns
         self._timer.set(self.context.every(self._hertz, self.update))
 
     def _shut_down(self) -> None:
@@ -133,7 +166,8 @@ class QuadrotorSimpleController(Plugin):
                                 + load_factor(self.context.gravity, pose.orientation) * gravity)
         if self._most_force > 0.0:
             lift = min(lift, self._most_force)
-        self._wrench = ((0.0, 0.0, max(0.0, lift)), torque)
+        self._wrench = ((0.0, 0.0, max(0.0, lift) * self._strength),
+                        scale(torque, self._strength))
 
     def _apply(self) -> None:
         hold_wrench(self.context, self._link, self._wrench)

@@ -8,8 +8,7 @@ turns them the wrong way.
 """
 from __future__ import annotations
 
-import random
-from typing import Any, Tuple
+from typing import Any
 
 from ...geometry import ZERO3, Vec3, conjugate, norm, rotate, rpy_from_quat, scale, subtract
 from ...geometry_messages import fill_pose, fill_vector
@@ -17,6 +16,7 @@ from ..base import Plugin
 from ..call_slot import CallSlot
 from ..finite_messages import subscribe_finite
 from .body_wrench import NO_WRENCH, hold_wrench
+from .command_noise import CommandNoise
 from .filtered_pid import FilteredPid
 from .quadrotor_simple_controller import load_factor, to_heading
 
@@ -37,8 +37,7 @@ class SjtuDrone(Plugin):
         context, p = self.enter_namespace()
         self._link = context.link(p.text("bodyName"))
         self._most_force = p.number("maxForce", -1.0)
-        self._noise = (p.number("motionSmallNoise", 0.0), p.number("motionDriftNoise", 0.0))
-        self._drift_ns = round(p.number("motionDriftNoiseTime", 1.0) * 1e9)
+        self._noise = CommandNoise(context)
         self._roll, self._pitch, self._yaw, self._vx, self._vy, self._vz, self._px, self._py, \
             self._pz = self._pids = [_pid(self.context.parameters, name) for name in (
                 "rollpitch", "rollpitch", "yaw", "velocityXY", "velocityXY", "velocityZ",
@@ -68,9 +67,7 @@ class SjtuDrone(Plugin):
             pid.reset()
         self._linear: Vec3 = (0.0, 0.0, 0.0)
         self._angular: Vec3 = (0.0, 0.0, 0.0)
-        self._random = random.Random(f"{self.context.seed}::{self.context.model}::drone")
-        self._drift: Tuple[float, ...] = (0.0,) * 4
-        self._drift_until_ns = self.context.now_ns + self._drift_ns
+        self._noise.reset()
         self._switch_off()
         self.clock_set()
 
@@ -85,12 +82,7 @@ class SjtuDrone(Plugin):
 
     def _receive(self, message: Any) -> None:
         """Keep a command, with the noise of its motion."""
-        small, drift = self._noise
-        if self.context.now_ns > self._drift_until_ns:
-            self._drift = tuple(drift * self._random.uniform(-1.0, 1.0) for _ in range(4))
-            self._drift_until_ns = self.context.now_ns + self._drift_ns
-        roll, pitch, yaw, up = (one + small * self._random.uniform(-1.0, 1.0)
-                                for one in self._drift)
+        roll, pitch, yaw, up = self._noise.draw()
         linear, angular = message.linear, message.angular
         self._linear = linear.x, linear.y, linear.z + up
         self._angular = angular.x + roll, angular.y + pitch, angular.z + yaw
