@@ -152,6 +152,16 @@ def test_a_reset_stops_the_motors():
     assert context.wrenches["base"] == OFF and context.stops == 0
 
 
+def test_the_thrust_acts_at_the_centre_of_mass():
+    context, _ = controller()
+    context.link("").inertial = Inertial(MASS, Pose((0.02, 0.0, 0.01)), 0.01, iyy=0.02,
+                                         izz=0.03)
+    context.deliver("/ardrone/takeoff")
+    context.advance(0.6)
+    # Gazebo's function for the force at a link's centre of mass: no moment about it.
+    assert context.wrenches["base"][1] == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
+
+
 def test_commands_have_noise_within_its_bounds():
     noise = "<motionSmallNoise>0.05</motionSmallNoise><motionDriftNoise>0.03</motionDriftNoise>" \
         "<motionDriftNoiseTime>0.1</motionDriftNoiseTime>" \

@@ -61,6 +61,13 @@ def test_velocity_commands_rise_pitch_roll_and_turn():
                                                                    0.0, 0.0))
 
 
+def test_the_thrust_acts_at_the_centre_of_mass():
+    context, _ = flying()
+    context.link("").inertial = Inertial(MASS, Pose((0.02, 0.0, 0.01)), 0.01, iyy=0.02,
+                                         izz=0.03)
+    assert command(context)[1] == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
+
+
 def test_a_position_command_is_a_place_in_the_world():
     context, _ = flying("<positionXYProportionalGain>2</positionXYProportionalGain>"
                         "<positionZProportionalGain>2</positionZProportionalGain>")

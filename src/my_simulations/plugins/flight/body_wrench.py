@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Tuple
 
 from ...engine.wrench_laws import BodyWrench, Wrench
-from ...geometry import Vec3, conjugate, rotate
+from ...geometry import Vec3, add, conjugate, cross, rotate
 from ..context import Context, Link
 
 NO_WRENCH: Wrench = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -22,6 +22,14 @@ def hold_wrench(context: Context, link: Link, wrench: Wrench) -> None:
         context.set_wrench(link.name, *wrench)   # without a law that keeps the link awake
     else:
         context.set_wrench_law(link.name, BodyWrench(*wrench))
+
+
+def wrench_at_mass_centre(link: Link, force: Vec3, torque: Vec3) -> Wrench:
+    """Convert a wrench at the centre of mass of a link to one at its origin, in its axes.
+
+    Gazebo's `Link::AddRelativeForce` acts at the centre of mass.
+    """
+    return force, add(torque, cross(link.inertial.pose.position, force))
 
 
 def body_twist(link: Link) -> Tuple[Vec3, Vec3]:

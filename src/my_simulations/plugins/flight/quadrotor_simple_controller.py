@@ -33,7 +33,7 @@ from ..call_slot import CallSlot
 from ..finite_messages import subscribe_finite
 from ..sensors.hector_errors import rate_of
 from ..time_out import Stopwatch
-from .body_wrench import NO_WRENCH, hold_wrench
+from .body_wrench import NO_WRENCH, hold_wrench, wrench_at_mass_centre
 from .command_noise import CommandNoise
 from .filtered_pid import FilteredPid
 from .flight_states import STRENGTHS, FlightStates, state_controller
@@ -122,7 +122,7 @@ class QuadrotorSimpleController(Plugin):
         for pid in (self._roll, self._pitch, self._yaw, self._x, self._y, self._z):
             pid.reset()
         self._velocity = self._link.twist.linear
-        self._last_ns = self.context.now_ns
+        self._stopwatch.restart()
         self._timer.set(self.context.every(self._hertz, self.update))
 
     def _shut_down(self) -> None:
@@ -166,8 +166,11 @@ class QuadrotorSimpleController(Plugin):
                                 + load_factor(self.context.gravity, pose.orientation) * gravity)
         if self._most_force > 0.0:
             lift = min(lift, self._most_force)
-        self._wrench = ((0.0, 0.0, max(0.0, lift) * self._strength),
-                        scale(torque, self._strength))
+        force = (0.0, 0.0, max(0.0, lift) * self._strength)
+        torque = scale(torque, self._strength)
+        # hector's thrust acts at the origin of the link, that of the AR.Drone at its mass centre.
+        self._wrench = (force, torque) if self._states is None else wrench_at_mass_centre(
+            self._link, force, torque)
 
     def _apply(self) -> None:
         hold_wrench(self.context, self._link, self._wrench)

@@ -15,7 +15,7 @@ from ...geometry_messages import fill_pose, fill_vector
 from ..base import Plugin
 from ..call_slot import CallSlot
 from ..finite_messages import subscribe_finite
-from .body_wrench import NO_WRENCH, hold_wrench
+from .body_wrench import NO_WRENCH, hold_wrench, wrench_at_mass_centre
 from .command_noise import CommandNoise
 from .filtered_pid import FilteredPid
 from .quadrotor_simple_controller import load_factor, to_heading
@@ -164,8 +164,8 @@ class SjtuDrone(Plugin):
         if self._most_force > 0.0:
             lift = min(lift, self._most_force)
         strength = _STRENGTH[self._state]
-        hold_wrench(self.context, link, ((0.0, 0.0, max(0.0, lift) * strength),
-                                         scale(torque, strength)))
+        hold_wrench(self.context, link, wrench_at_mass_centre(
+            link, (0.0, 0.0, max(0.0, lift) * strength), scale(torque, strength)))
 
     def _publish(self) -> None:
         pose, velocity, now = self._link.pose, self._link.twist.linear, self.context.now_ns
