@@ -120,6 +120,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("pose-not-finite", ERROR, "A pose contains NaN or infinity.", "Write finite numbers."),
         ("frame-unknown", WARNING, "A pose refers to a frame that does not exist.",
          "Correct the frame's name."),
+        ("lumped-gravity", WARNING, "A link without gravity is lumped into another one, which then "
+         "has no gravity either.", "Remove <turnGravityOff>, or set disableFixedJointLumping."),
         ("reference-unknown", WARNING, "<gazebo reference> names no link or joint.",
          "Correct the reference."),
         ("sdf-version", WARNING, "The SDF version is missing or invalid; read as 1.7.",

@@ -223,3 +223,17 @@ def test_a_name_that_begins_with_the_links_gets_no_prefix():
     (link,) = model.links
     assert [c.name for c in link.collisions] == ["base_collision", "base_cap_collision_1"]
     assert [v.name for v in link.visuals] == ["base_visual", "base_cap_visual_1"]
+
+
+@pytest.mark.parametrize("base, tip, warned", [
+    ("", "<turnGravityOff>true</turnGravityOff>", True),
+    ("<turnGravityOff>false</turnGravityOff>", "<turnGravityOff>true</turnGravityOff>", True),
+    ("<turnGravityOff>true</turnGravityOff>", "<turnGravityOff>true</turnGravityOff>", False),
+    ("", "<turnGravityOff>false</turnGravityOff>", False)])
+def test_a_sensor_link_that_takes_the_gravity_of_its_robot_is_warned_of(base, tip, warned):
+    _, issues = robot_of(
+        robot_link("a") + robot_link("b") + robot_joint("j", "a", "b")
+        + f'<gazebo reference="a">{base}</gazebo><gazebo reference="b">{tip}</gazebo>')
+    found = [issue.message for issue in issues if issue.code == "lumped-gravity"]
+    assert found == (["link 'b' has no gravity, so 'a' has none either: a fixed joint connects"
+                      " them, as in Gazebo"] if warned else [])

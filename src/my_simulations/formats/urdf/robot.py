@@ -280,10 +280,15 @@ class _RobotReader:
         if to.self_collide is None or "selfCollide" in body.set_tags:
             to.self_collide = link.self_collide if link.self_collide is not None \
                 else to.self_collide
+        had_gravity = to.gravity
         if "turnGravityOff" in body.set_tags:
             to.gravity = link.gravity
         else:
             to.gravity = to.gravity and link.gravity
+        if had_gravity and not to.gravity and to.name != WORLD:
+            self._source.warn("lumped-gravity", f"link {link.name!r} has no gravity, so {to.name!r}"
+                              " has none either: a fixed joint connects them, as in Gazebo",
+                              body.element)
         to.kinematic = to.kinematic or link.kinematic
         if "dampingFactor" not in whole.set_tags:
             to.linear_decay = to.linear_decay or link.linear_decay
