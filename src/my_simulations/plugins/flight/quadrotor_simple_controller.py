@@ -62,7 +62,7 @@ class QuadrotorSimpleController(Plugin):
                 context.warn(f"<{name}> is ignored; the controller uses the true state")
         self._wrenches = context.publish(self._topic("wrench_topic", p.text(
             "wrenchTopic", "wrench_out")), "geometry_msgs/Wrench", 10)
-        self._timer = CallSlot()
+        self._timer, self._stopwatch = CallSlot(), Stopwatch(context)
         self._strength = 1.0
         self._begin()
         drone = state_controller(context)
@@ -93,7 +93,7 @@ class QuadrotorSimpleController(Plugin):
             self._noise.reset()
 
     def clock_set(self) -> None:
-        self._stopwatch = Stopwatch(self.context)
+        self._stopwatch.restart()
         if self._states is not None:
             self._states.clock_set()
 
