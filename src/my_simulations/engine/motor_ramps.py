@@ -7,7 +7,7 @@ target, all motors get their targets.
 """
 from __future__ import annotations
 
-from typing import Callable, Dict, Iterable, List, Optional, Tuple
+from typing import Callable, Dict, Iterable, List, Optional, Sequence, Tuple
 
 from .commands import Clear, Command, LoadModel, RemoveModel, Restart
 from .drive_commands import JointMotor, RateRamp, SetMotors
@@ -80,7 +80,8 @@ class MotorRamps:
                  set_motors: Callable[[SetMotors], object]) -> None:
         self._read_axes, self._set_motors = read_axes, set_motors
         self._groups: Dict[str, _Group] = {}
-        self._rows: Dict[int, Iterable[int]] = {}   # of the joint axes of each model
+        self._rates: Dict[int, float] = {}          # of motors without a ramp, by joint row
+        self._rows: Dict[int, Sequence[int]] = {}   # of the joint axes of each model
         self.next_step = NO_LIMIT
 
     def set(self, command: SetMotors, step: int, clock: Clock) -> None:
@@ -96,16 +97,18 @@ class MotorRamps:
         for one, present in zip(command.motors, begun):
             if one.ramp is None:
                 self._end([one.row])
+                self._rates[one.row] = one.rate
             else:
                 self._set_target(one, one.ramp, present.rate, step, clock)
         self._plan()
 
     def _present_rate(self, row: int) -> float:
-        """The rate to which a ramp drives an axis now; without a ramp that of the axis."""
+        """The rate to which a motor drives an axis now; without a motor that of the axis."""
         for group in self._groups.values():
             if row in group.commanded:
                 return group.commanded[row]
-        return self._read_axes((row,))[1]
+        found = self._rates.get(row)
+        return self._read_axes((row,))[1] if found is None else found
 
     def _set_target(self, motor: JointMotor, ramp: RateRamp, present: float, step: int,
                     clock: Clock) -> None:
@@ -139,10 +142,13 @@ class MotorRamps:
             first = command.first_joint_row
             self._rows[command.model_id] = range(first, first + len(axis_rows(command.model)))
         elif isinstance(command, RemoveModel):
-            self._end(self._rows.pop(command.model_id, ()))
+            gone = self._rows.pop(command.model_id, ())
+            self._end(gone)
+            self._rates = {row: rate for row, rate in self._rates.items() if row not in gone}
             self._plan()
         elif isinstance(command, (Restart, Clear)):
             self._groups.clear()
+            self._rates.clear()
             self._plan()
 
     def _end(self, rows: Iterable[int]) -> None:

@@ -93,7 +93,14 @@ def test_a_motor_that_is_set_without_a_ramp_has_its_rate_at_once_and_stays(base)
     assert base.rates == pytest.approx({LEFT: 0.04, RIGHT: 0.04})
 
 
-def test_a_ramp_begins_at_the_rate_of_the_joint(base):
+def test_a_ramp_begins_at_the_rate_of_the_motor_whatever_the_joint_does(base):
+    base.drive(0.2, 0.2, ramp=None)
+    base.rates = {LEFT: 0.1, RIGHT: 0.3}
+    base.drive(1.0, 1.0)
+    assert base.rates == {LEFT: 0.2, RIGHT: 0.2}
+
+
+def test_a_ramp_of_a_joint_without_a_motor_begins_at_its_rate(base):
     base.rates = {LEFT: 0.5, RIGHT: 0.5}
     base.drive(1.0, 1.0)
     base.advance(20)
