@@ -128,8 +128,7 @@ class ActionServer:
     def send_feedback(self, goal: Goal, feedback: Any) -> None:
         """Publish feedback of a goal, if the topic has a subscriber."""
         if self._feedback.wanted:
-            message = self._context.message(f"{self._kind}ActionFeedback")
-            message.header.stamp = self._context.stamp()
+            message = stamp_message(self._context, f"{self._kind}ActionFeedback")
             message.status, message.feedback = self._status_of(goal), feedback
             self._feedback.publish(message)
 
@@ -174,8 +173,7 @@ class ActionServer:
         return status
 
     def _send_result(self, goal: Goal, result: Any) -> None:
-        message = self._context.message(f"{self._kind}ActionResult")
-        message.header.stamp = self._context.stamp()
+        message = stamp_message(self._context, f"{self._kind}ActionResult")
         message.status, message.result = self._status_of(goal), result
         self._results.publish(message)
 

@@ -1,4 +1,4 @@
-"""Names of tf frames under a prefix (source: tf::resolve of ROS 1), and headers with them."""
+"""Names of tf frames under a prefix (source: tf::resolve of ROS 1), and messages with headers."""
 from __future__ import annotations
 
 from typing import Any, Optional
@@ -23,4 +23,11 @@ def stamp_message(context: Context, kind: str, frame: str = "", ns: Optional[int
     """Make a message whose header has the frame and the sim time `ns` (default: now)."""
     message = context.message(kind)
     message.header.stamp, message.header.frame_id = context.stamp(ns), frame
+    return message
+
+
+def data_message(context: Context, kind: str, data: Any) -> Any:
+    """Return a message of a type with the field `data`, such as std_msgs/Bool."""
+    message = context.message(kind)
+    message.data = data
     return message

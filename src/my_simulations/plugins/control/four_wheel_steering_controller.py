@@ -12,6 +12,7 @@ from typing import Any, Deque, List, NamedTuple, Sequence, Tuple
 
 from ...geometry import Vec3
 from ..context import PluginError, Publication
+from ..frames import stamp_message
 from .base_controller import BaseController, Planar
 from .hardware import POSITION, VELOCITY, HardwareJoint
 from .speed_limits import clamp
@@ -190,8 +191,7 @@ class FourWheelSteeringController(BaseController):
         if self._odom_steer is None or not self._odom_steer.wanted or not self._changes:
             return
         means = [sum(one[k] for one in self._changes) / len(self._changes) for k in range(4)]
-        message = self.context.message(f"{_MESSAGES}/FourWheelSteeringStamped")
-        message.header.stamp, message.header.frame_id = self.context.stamp(), "odom"
+        message = stamp_message(self.context, f"{_MESSAGES}/FourWheelSteeringStamped", "odom")
         data = message.data
         data.speed, data.front_steering_angle, data.rear_steering_angle = self._state
         data.acceleration, data.jerk = means[:2]

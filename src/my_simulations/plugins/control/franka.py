@@ -6,6 +6,7 @@ not offered.
 from __future__ import annotations
 
 from ..context import Context
+from ..frames import data_message
 from ..world.gravity_compensation import GravityCompensation
 from .controller import Controller
 from .joint_state import make_joint_state
@@ -22,9 +23,7 @@ class FrankaArm:
     def __init__(self, context: Context) -> None:
         self._compensation = GravityCompensation(context)
         topic = context.publish("initialized", "std_msgs/Bool", latch=True)
-        message = context.message("std_msgs/Bool")
-        message.data = True
-        topic.publish(message)
+        topic.publish(data_message(context, "std_msgs/Bool", True))
 
     def reset(self) -> None:
         """Compensate gravity again: forces ended with the reset."""

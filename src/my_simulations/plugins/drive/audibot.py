@@ -15,7 +15,7 @@ from ...geometry_messages import fill_pose
 from ..base import Plugin
 from ..context import Joint
 from ..finite_messages import subscribe_finite
-from ..frames import stamp_message
+from ..frames import data_message, stamp_message
 from ..time_out import TimeOut
 from .wheels import apply_torque
 
@@ -137,12 +137,9 @@ class Audibot(Plugin):
         odom.twist.twist = message.twist
         fill_pose(odom.pose.pose, pose)
         self._odom.publish(odom)
-        gear = context.message("std_msgs/UInt8")
-        gear.data = self._gear
-        self._gear_state.publish(gear)
-        steering = context.message("std_msgs/Float64")
-        steering.data = _STEERING_RATIO * self._angle
-        self._steering_state.publish(steering)
+        self._gear_state.publish(data_message(context, "std_msgs/UInt8", self._gear))
+        self._steering_state.publish(data_message(
+            context, "std_msgs/Float64", _STEERING_RATIO * self._angle))
 
     def _broadcast(self) -> None:
         self.context.transform("world", self._frame, self._footprint.pose)

@@ -13,6 +13,7 @@ from typing import Dict, List, Optional
 
 from ...geometry import inverse, transform
 from ..context import Context, Joint, PluginError
+from ..frames import stamp_message
 from ..time_out import Stopwatch
 from .floor_rays import FloorRays, sensor_named
 from .odometry import Odometer, WheelCounter
@@ -115,8 +116,7 @@ class CreateSensors:
         """Publish the last distances of the rays and the present contacts."""
         if not self._distances:
             return
-        message = self._context.message("create_node/TurtlebotSensorState")
-        message.header.stamp = self._context.stamp()
+        message = stamp_message(self._context, "create_node/TurtlebotSensorState")
         message.wall = self._distances["wall_sensor"] < _WALL
         for sensor, field in _CLIFFS.items():
             setattr(message, field, self._distances[sensor] > _CLIFF)

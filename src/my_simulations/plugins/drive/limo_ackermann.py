@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 
+from ..frames import data_message
 from .skid_steer_drive import SkidSteerDrive
 
 _WHEEL_BASE, _TRACK = 0.2, 0.172   # m
@@ -36,6 +37,4 @@ class LimoAckermann(SkidSteerDrive):
             front, rear = self._joints[0 if side > 0.0 else 1::2]
             front.drive(speed * share / math.cos(turned) / self._radius, self._torque)
             rear.drive(speed * share / self._radius, self._torque)
-            message = self.context.message("std_msgs/Float64")
-            message.data = turned
-            steer.publish(message)
+            steer.publish(data_message(self.context, "std_msgs/Float64", turned))

@@ -16,6 +16,7 @@ from ...geometry import ZERO3, Vec3
 from ..base import Plugin
 from ..context import PluginError
 from ..finite_messages import subscribe_finite
+from ..frames import data_message
 
 ACTUATORS = "mav_msgs/Actuators"
 _MOTOR_EFFORT = 1e3   # N m: the motor follows its speed in one step
@@ -74,9 +75,7 @@ class MotorModel(Plugin):
         topic = self.context.publish(name, "std_msgs/Float32")
 
         def publish() -> None:
-            message = self.context.message("std_msgs/Float32")
-            message.data = read()
-            topic.publish(message)
+            topic.publish(data_message(self.context, "std_msgs/Float32", read()))
 
         self.context.observe(0.0, publish, [topic], efforts=efforts)
 

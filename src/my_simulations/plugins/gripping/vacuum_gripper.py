@@ -11,6 +11,7 @@ from typing import List, Tuple
 from ...geometry import norm, subtract
 from ..base import Plugin
 from ..call_slot import CallSlot
+from ..frames import data_message
 
 _REACH = 0.05   # m, between the origins of the links
 _HERTZ = 100.0
@@ -51,9 +52,7 @@ class VacuumGripper(Plugin):
         self._held = []
 
     def publish(self) -> None:
-        message = self.context.message("std_msgs/Bool")
-        message.data = bool(self._held)
-        self._topic.publish(message)
+        self._topic.publish(data_message(self.context, "std_msgs/Bool", bool(self._held)))
 
     def _attach_touched(self) -> None:
         context, here = self.context, self._link.pose.position

@@ -12,6 +12,7 @@ from typing import Any, Dict, List
 from ...sensing.api import LABELS, NO_ROW
 from ..base import Plugin
 from ..context import View
+from ..frames import data_message
 from .camera_parameters import Calibration, rate_of, spec_of, topics_of
 from .image_messages import header, make_image
 from .picture_stream import camera_sensor, place_of
@@ -56,9 +57,8 @@ class SegmentationCamera(Plugin):
             if row != NO_ROW and row in names:
                 table[row] = self._numbers.setdefault(names[row], len(self._numbers) + 1)
         if len(self._numbers) != known:
-            text = context.message("std_msgs/String")
-            text.data = json.dumps({str(n): name for name, n in self._numbers.items()})
-            self._names.publish(text)
+            self._names.publish(data_message(context, "std_msgs/String", json.dumps(
+                {str(n): name for name, n in self._numbers.items()})))
         if self._info.wanted:
             self._info.publish(self._calibration.message(head))
         self._image.publish_later(lambda: make_image(context, head, table[rows], "mono16"))
