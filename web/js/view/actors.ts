@@ -10,6 +10,7 @@ import {LIMITS} from '../protocol.js';
 import {SimClock} from '../sim_clock.js';
 import {sourceOf} from './mesh_files.js';
 import {place} from './three_convert.js';
+import {ViewPart} from './view_part.js';
 import type {Actor, Geometry, Pushes} from '../protocol.js';
 import type {MeshSource} from './mesh_files.js';
 import type {AnimationAction, Object3D} from 'three';
@@ -223,9 +224,7 @@ export class Figure {
   }
 }
 
-export class Actors {
-  #stage;
-  #store;
+export class Actors extends ViewPart {
   #meshes;
   #clock = new SimClock();
   #figures: Figure[] = [];
@@ -234,9 +233,9 @@ export class Actors {
   #timer: ReturnType<typeof setTimeout>|undefined;
   #told: Set<string> = new Set();
 
-  constructor({stage, store, stock}: ViewParts) {
-    this.#stage = stage;
-    this.#store = store;
+  constructor(parts: ViewParts) {
+    super(parts);
+    const {store, stock} = parts;
     this.#meshes = stock.meshes;
     store.listen('document', () => this.#build());
     store.listen('stats', () => { if (!this.#replaying) this.#tellLive(); });
@@ -251,7 +250,7 @@ export class Actors {
   }
 
   #tellLive() {
-    const {sim_ns: sim, factor, paused} = this.#store.stats;
+    const {sim_ns: sim, factor, paused} = this.store.stats;
     this.#tell(sim / 1e9, paused ? 0 : factor);
   }
 
@@ -268,14 +267,14 @@ export class Actors {
   }
 
   #build() {
-    const {actors = []} = this.#store.document ?? {};
+    const {actors = []} = this.store.document ?? {};
     const text = JSON.stringify(actors);
     if (text === this.#known) return;
     this.#known = text;
-    this.#stage.scene.remove(...this.#figures.map(({group}) => group));
+    this.stage.scene.remove(...this.#figures.map(({group}) => group));
     this.#figures = actors.map((actor) => this.#made(actor));
     this.#step();
-    this.#stage.shadowsChanged();
+    this.stage.shadowsChanged();
   }
 
   #made(actor: Actor) {
@@ -288,9 +287,9 @@ export class Actors {
         ...figure.foreign.map((file) => file && this.#meshes.figure(file))]).then(([skin, ...movers]) => {
         if (!skin || !this.#figures.includes(figure)) return;
         figure.dress(skin, movers);
-        this.#stage.scene.add(figure.group);
+        this.stage.scene.add(figure.group);
         this.#step();
-        this.#stage.shadowsChanged();
+        this.stage.shadowsChanged();
       });
     }
     return figure;
@@ -299,7 +298,7 @@ export class Actors {
   #tellOnce(message: string) {
     if (this.#told.has(message)) return;
     this.#told.add(message);
-    this.#store.addIssue({severity: 'warning', code: 'resource', message});
+    this.store.addIssue({severity: 'warning', code: 'resource', message});
   }
 
   /** Shows all where they are now, and comes back while time goes on. */
@@ -309,7 +308,7 @@ export class Actors {
     const now = performance.now();
     const time = this.#clock.at(now);
     const changed = this.#figures.filter((figure) => figure.show(time));
-    if (changed.length) this.#stage.shadowsChanged();
+    if (changed.length) this.stage.shadowsChanged();
     if (this.#clock.runs(now) && this.#figures.some(({moves}) => moves)) {
       this.#timer = setTimeout(() => this.#step(), PERIOD);
     }

@@ -2,6 +2,7 @@
 import {BufferAttribute, BufferGeometry, DoubleSide, Mesh, Vector3} from 'three';
 import {snapped} from '../face_math.js';
 import {through} from './markers.js';
+import {ViewPart} from './view_part.js';
 import type {Face} from '../face_math.js';
 import type {MousePoint} from './pointer.js';
 import type {ViewParts} from './view.js';
@@ -18,25 +19,15 @@ function triangle(color: number) {
   return mesh;
 }
 
-export class FaceSnap {
-  #store;
-  #actions;
-  #batches;
-  #models;
-  #picker;
-  #stage;
+export class FaceSnap extends ViewPart {
   #hovered = triangle(0xff2a2a);
   #chosen = triangle(0xff9f1c);
   /** The face that was chosen first, in its link's frame: the link may go on moving. */
   #first: {model: string, link: number, corners: Vector3[]}|null = null;
 
-  constructor({store, actions, batches, models, picker, stage}: ViewParts) {
-    this.#store = store;
-    this.#actions = actions;
-    this.#batches = batches;
-    this.#models = models;
-    this.#picker = picker;
-    this.#stage = stage;
+  constructor(parts: ViewParts) {
+    super(parts);
+    const {store, stage} = parts;
     stage.scene.add(this.#hovered, this.#chosen);
     store.listen('mode', () => this.#reset());
     for (const event of ['document', 'entity'] as const) {
@@ -70,33 +61,33 @@ export class FaceSnap {
     const face = first && this.#chosenFace(first);
     if (!first || !face || first.model === model) {
       if (plane) return;
-      const within = this.#models.linkMatrix(linkId)?.clone().invert();
+      const within = this.models.linkMatrix(linkId)?.clone().invert();
       if (!within) return;
       this.#first = {model, link: linkId, corners: hit.face.corners.map((corner) =>
         new Vector3().fromArray(corner).applyMatrix4(within))};
-      this.#store.select([model]);
+      this.store.select([model]);
       this.#mark(this.#chosen, hit.face);
       return;
     }
     const name = first.model;
     // As it is shown: both faces are.
-    const before = this.#models.shownPose(name);
+    const before = this.models.shownPose(name);
     if (!before) return;
     const pose = snapped(before, face, hit.face);
-    this.#store.setMode('select');
-    await this.#models.carry({[name]: pose}, this.#actions.move({[name]: pose}, 'snap'));
+    this.store.setMode('select');
+    await this.models.carry({[name]: pose}, this.actions.move({[name]: pose}, 'snap'));
   }
 
   /** In the world, where its link is shown now. */
   #chosenFace({model, link, corners}: {model: string, link: number, corners: Vector3[]}): Face|null {
-    const matrix = this.#store.model(model)?.links.some(({id}) => id === link) &&
-      this.#models.linkMatrix(link);
+    const matrix = this.store.model(model)?.links.some(({id}) => id === link) &&
+      this.models.linkMatrix(link);
     if (!matrix) return null;
     return {corners: corners.map((corner) => corner.clone().applyMatrix4(matrix).toArray())};
   }
 
   #under({clientX, clientY}: MousePoint) {
-    return this.#picker.nearest(this.#batches.items(), clientX, clientY,
+    return this.picker.nearest(this.batches.items(), clientX, clientY,
       (owner) => owner.model !== undefined);
   }
 
@@ -108,7 +99,7 @@ export class FaceSnap {
       corners.array.set(face.corners.flat());
       corners.needsUpdate = true;
     }
-    this.#stage.invalidate();
+    this.stage.invalidate();
   }
 
   #reset() {

@@ -4,6 +4,7 @@ import {
   conjugate, length, normalized, orientation, rotate, scale, subtract, transform,
 } from '../pose.js';
 import {arrow, empty, point, through} from './markers.js';
+import {ViewPart} from './view_part.js';
 import type {MousePoint} from './pointer.js';
 import type {Ray} from '../drag_math.js';
 import type {ShownWrench} from '../actions.js';
@@ -29,24 +30,15 @@ function onSphere(ray: Ray, centre: Vec3, radius: number) {
   return normalized(off.map((part, i) => part - depth * ray.direction[i]));
 }
 
-export class Forces {
-  #store;
-  #models;
-  #picker;
-  #rig;
-  #stage;
+export class Forces extends ViewPart {
   #group = new Group();
   #wrench: ShownWrench|null = null;
   #onTurned: ((turned: Turned) => void)|null = null;
   #held: 'force'|'torque'|null = null;
 
-  constructor({store, models, picker, rig, stage}: ViewParts) {
-    this.#store = store;
-    this.#models = models;
-    this.#picker = picker;
-    this.#rig = rig;
-    this.#stage = stage;
-    stage.scene.add(this.#group);
+  constructor(parts: ViewParts) {
+    super(parts);
+    this.stage.scene.add(this.#group);
   }
 
   /**
@@ -65,7 +57,7 @@ export class Forces {
       this.#group.add(mark);
     }
     this.update();
-    this.#stage.invalidate();
+    this.stage.invalidate();
   }
 
   /** Keeps the arrows at the link, and of one size on the screen. */
@@ -78,7 +70,7 @@ export class Forces {
       const vector = mark.userData.kind === 'force' ? wrench.force : wrench.torque;
       const direction = wrench.in_link_axes ? rotate(frame.axes, vector) : vector;
       mark.position.fromArray(frame.place);
-      mark.scale.setScalar(PIXELS * this.#rig.unitAt(frame.place));
+      mark.scale.setScalar(PIXELS * this.rig.unitAt(frame.place));
       point(mark, direction);
     }
   }
@@ -96,15 +88,15 @@ export class Forces {
     const frame = this.#frame();
     const wrench = this.#wrench;
     if (!this.#held || !frame || !wrench) return;
-    const ray = this.#picker.ray(event.clientX, event.clientY);
-    const radius = PIXELS * this.#rig.unitAt(frame.place);
+    const ray = this.picker.ray(event.clientX, event.clientY);
+    const radius = PIXELS * this.rig.unitAt(frame.place);
     let way = onSphere(ray, frame.place, radius);
     if (wrench.in_link_axes) way = rotate(conjugate(frame.axes), way);
     const turned = scale(way, length(wrench[this.#held]));
     this.#wrench = {...wrench, [this.#held]: turned};
     this.#onTurned?.({[this.#held]: turned});
     this.update();
-    this.#stage.invalidate();
+    this.stage.invalidate();
   }
 
   release() {
@@ -113,14 +105,14 @@ export class Forces {
 
   #under({clientX, clientY}: MousePoint) {
     if (!this.#wrench || !this.#onTurned) return null;
-    const [hit] = this.#picker.objects(this.#group.children, clientX, clientY);
+    const [hit] = this.picker.objects(this.#group.children, clientX, clientY);
     return KINDS.find((kind) => hit?.object.parent?.userData.kind === kind) ?? null;
   }
 
   #frame() {
     const wrench = this.#wrench;
-    const entity = wrench && this.#store.entity(wrench.link);
-    const pose = wrench && this.#models.shownPose(wrench.link);
+    const entity = wrench && this.store.entity(wrench.link);
+    const pose = wrench && this.models.shownPose(wrench.link);
     if (!wrench || !pose || entity?.kind !== 'link') return null;
     const at = wrench.point ?? entity.link.inertial.pose.slice(0, 3);
     return {place: transform(pose, at), axes: orientation(pose)};

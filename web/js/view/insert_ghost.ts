@@ -8,6 +8,7 @@ import {lightIcon} from './light_views.js';
 import {free} from './markers.js';
 import {standaloneModel} from './standalone_model.js';
 import {Box3, Vector3} from 'three';
+import {ViewPart} from './view_part.js';
 import type {Group} from 'three';
 import type {Pose7} from '../pose.js';
 import type {Light, Model} from '../protocol.js';
@@ -21,13 +22,8 @@ const STEPS_ASIDE = [0, 1, -1, 2, -2, 3, -3, 4, -4];
 
 const NO_BOX = {min: [0, 0, 0], max: [0, 0, 0]};
 
-export class Placer {
-  #store;
-  #actions;
+export class Placer extends ViewPart {
   #landing;
-  #stage;
-  #stock;
-  #models;
   /** How far it is turned about z, rad. */
   #turn = 0;
   /** Its box about its origin, along the world's axes, m. */
@@ -37,14 +33,10 @@ export class Placer {
   #pointed: MousePoint|null = null;
   #dispose = () => {};
 
-  constructor({store, actions, picker, batches, stage, stock, models}: ViewParts) {
-    this.#landing = new Landing({store, batches, picker});
-    this.#models = models;
-    this.#store = store;
-    this.#actions = actions;
-    this.#stage = stage;
-    this.#stock = stock;
-    store.listen('placing', () => this.#change());
+  constructor(parts: ViewParts) {
+    super(parts);
+    this.#landing = new Landing(parts);
+    this.store.listen('placing', () => this.#change());
   }
 
   /** Goes where the mouse is; with Ctrl to whole metres when near. */
@@ -54,14 +46,14 @@ export class Placer {
     this.#pointed = event;
     this.#ghost.visible = true;
     place(this.#ghost, pose);
-    this.#stage.shadowsChanged();
+    this.stage.shadowsChanged();
   }
 
   /** The mouse has left the picture. */
   hide() {
     if (!this.#ghost?.visible) return;
     this.#ghost.visible = false;
-    this.#stage.shadowsChanged();
+    this.stage.shadowsChanged();
   }
 
   /** Turns it counterclockwise, seen from above. @param angle  rad */
@@ -79,7 +71,7 @@ export class Placer {
   /** Puts it down where the mouse is. */
   put(event: MousePoint) {
     const pose = this.#pose(event);
-    if (pose) this.#actions.place(pose);
+    if (pose) this.actions.place(pose);
   }
 
   /**
@@ -91,12 +83,12 @@ export class Placer {
       this.put(this.#pointed);
       return;
     }
-    const {left, top, width, height} = this.#stage.canvas.getBoundingClientRect();
+    const {left, top, width, height} = this.stage.canvas.getBoundingClientRect();
     for (const down of [0.5, 0.7, 0.9]) {
       const pose = this.#pose({clientX: left + width / 2, clientY: top + height * down},
-        (model) => this.#store.model(model)?.static ?? false);
+        (model) => this.store.model(model)?.static ?? false);
       if (pose) {
-        this.#actions.place(this.#beside(pose));
+        this.actions.place(this.#beside(pose));
         return;
       }
     }
@@ -104,14 +96,14 @@ export class Placer {
 
   /** The nearest pose at which no model is, to the right or left of a place; the place without one. */
   #beside(pose: Pose7): Pose7 {
-    const {placing, document} = this.#store;
+    const {placing, document} = this.store;
     if (!this.#ghost || placing?.kind !== 'model') return pose;
     place(this.#ghost, pose);
     this.#ghost.updateMatrixWorld(true);
     const own = new Box3().setFromObject(this.#ghost).expandByScalar(-CLEAR);
     if (own.isEmpty()) return pose;
-    const others = (document?.models ?? []).flatMap(({name}) => this.#models.bounds(name) ?? []);
-    const aside = new Vector3(1, 0, 0).transformDirection(this.#stage.camera.matrixWorld).setZ(0).normalize()
+    const others = (document?.models ?? []).flatMap(({name}) => this.models.bounds(name) ?? []);
+    const aside = new Vector3(1, 0, 0).transformDirection(this.stage.camera.matrixWorld).setZ(0).normalize()
       .multiplyScalar(own.getSize(new Vector3()).setZ(0).length() + 2 * CLEAR);
     for (const step of STEPS_ASIDE) {
       const shift = aside.clone().multiplyScalar(step);
@@ -125,7 +117,7 @@ export class Placer {
 
   /** Keeps its own height over what carries it (Gazebo behaviour: over the ground). */
   #pose(event: MousePoint, accept?: (model: string) => boolean): Pose7|null {
-    const {placing} = this.#store;
+    const {placing} = this.store;
     const place = placing && this.#landing.under(event, this.#box, accept);
     if (!place) return null;
     // Beside a wall, a whole metre may be inside of it.
@@ -143,7 +135,7 @@ export class Placer {
 
   /** Finds the box of the ghost as it is turned. */
   #measure() {
-    const {placing} = this.#store;
+    const {placing} = this.store;
     if (!this.#ghost || placing?.kind !== 'model') return;
     const {position, quaternion} = this.#ghost;
     const [at, turn] = [position.clone(), quaternion.clone()];
@@ -156,27 +148,27 @@ export class Placer {
   }
 
   #change() {
-    if (this.#ghost) this.#stage.scene.remove(this.#ghost);
+    if (this.#ghost) this.stage.scene.remove(this.#ghost);
     this.#dispose();
     this.#ghost = null;
     this.#turn = 0;
     this.#box = NO_BOX;
     this.#dispose = () => {};
-    const {placing} = this.#store;
+    const {placing} = this.store;
     if (placing) {
       // Enter and Escape mean what is being placed, also after a button was pressed by a key.
-      this.#stage.canvas.parentElement?.focus({preventScroll: true});
+      this.stage.canvas.parentElement?.focus({preventScroll: true});
       const ghost = placing.kind === 'light' ? this.#lightGhost(placing.document)
         : this.#modelGhost(placing.document);
       ghost.visible = false;
-      this.#stage.scene.add(ghost);
+      this.stage.scene.add(ghost);
       this.#ghost = ghost;
       this.#measure();
     } else if (document.activeElement === document.body) {
       // The arrow keys drive a robot that was just placed.
-      this.#stage.canvas.parentElement?.focus({preventScroll: true});
+      this.stage.canvas.parentElement?.focus({preventScroll: true});
     }
-    this.#stage.shadowsChanged();
+    this.stage.shadowsChanged();
   }
 
   #lightGhost(document: Light) {
@@ -186,11 +178,11 @@ export class Placer {
   }
 
   #modelGhost(document: Model) {
-    const {group, ready, dispose} = standaloneModel(document, this.#stock, {opacity: 0.75});
+    const {group, ready, dispose} = standaloneModel(document, this.stock, {opacity: 0.75});
     this.#dispose = dispose;
     ready.then(() => {
       if (this.#ghost === group) this.#measure();
-      this.#stage.shadowsChanged();
+      this.stage.shadowsChanged();
     });
     return group;
   }

@@ -2,9 +2,9 @@
 import {rayPlane, WORLD_AXES} from '../drag_math.js';
 import {normal} from '../face_math.js';
 import {dot, normalized, scale} from '../pose.js';
+import {ViewPart} from './view_part.js';
 import type {Vec3} from '../pose.js';
 import type {MousePoint} from './pointer.js';
-import type {ViewParts} from './view.js';
 
 /** A surface less steep than 45 degrees carries things, as does every one that is level. */
 const LEVEL = Math.SQRT1_2;
@@ -24,16 +24,7 @@ function standOff(box: {min: Vec3, max: Vec3}, away: Vec3): number {
   return Math.max(0, -nearest) + CLEAR;
 }
 
-export class Landing {
-  #store;
-  #batches;
-  #picker;
-
-  constructor({store, batches, picker}: Pick<ViewParts, 'store'|'batches'|'picker'>) {
-    this.#store = store;
-    this.#batches = batches;
-    this.#picker = picker;
-  }
+export class Landing extends ViewPart {
 
   /**
    * The place for a thing under the mouse; null where there is nothing but sky. Parts of the model that is being
@@ -43,9 +34,9 @@ export class Landing {
    */
   under({clientX, clientY}: MousePoint, box: {min: Vec3, max: Vec3}, accept: (model: string) => boolean = () => true):
       Place|null {
-    const ray = this.#picker.ray(clientX, clientY);
-    const hit = this.#store.modelEditing ? null
-      : this.#picker.nearest(this.#batches.items(), clientX, clientY, ({model}) => model !== undefined && accept(model));
+    const ray = this.picker.ray(clientX, clientY);
+    const hit = this.store.modelEditing ? null
+      : this.picker.nearest(this.batches.items(), clientX, clientY, ({model}) => model !== undefined && accept(model));
     if (!hit) {
       const point = rayPlane(ray, [0, 0, 0], WORLD_AXES.z);
       return point && {point, level: true};
@@ -62,6 +53,6 @@ export class Landing {
   /** The height of the surface below a point; 0 without one. */
   #below(point: Vec3) {
     const down = {origin: point, direction: [0, 0, -1]};
-    return this.#picker.along(this.#batches.items(), down, (owner) => owner.model !== undefined)?.point[2] ?? 0;
+    return this.picker.along(this.batches.items(), down, (owner) => owner.model !== undefined)?.point[2] ?? 0;
   }
 }

@@ -5,6 +5,7 @@ import {compose, inverse, orientation, position} from '../pose.js';
 import {LIMITS} from '../protocol.js';
 import {Gizmo} from './gizmo.js';
 import {axisOf, graspedPoint, isNothing, numbersOf} from './grasp.js';
+import {ViewPart} from './view_part.js';
 import type {AxisName, GizmoMode} from './gizmo.js';
 import type {DragResult, Grasp} from './grasp.js';
 import type {KeyState, MousePoint} from './pointer.js';
@@ -28,15 +29,7 @@ const isGizmoMode = (mode: string): mode is GizmoMode =>
 const howOf = (handle: AxisName|null, key: AxisName|null, event: KeyState) =>
     `${key ?? handle ?? ''} ${Boolean(event.shiftKey)}`;
 
-export class Manipulator {
-  #store;
-  #actions;
-  #connection;
-  #models;
-  #lights;
-  #rig;
-  #picker;
-  #stage;
+export class Manipulator extends ViewPart {
   #gizmo;
   #grasp: Grasp|null = null;
   #result: DragResult|null = null;
@@ -50,15 +43,9 @@ export class Manipulator {
   /** Called with what a drag has come to, in numbers; '' at its end. */
   onNumbers = (_text: string) => {};
 
-  constructor({store, actions, connection, models, lights, rig, picker, stage}: ViewParts) {
-    this.#store = store;
-    this.#actions = actions;
-    this.#connection = connection;
-    this.#models = models;
-    this.#lights = lights;
-    this.#rig = rig;
-    this.#picker = picker;
-    this.#stage = stage;
+  constructor(parts: ViewParts) {
+    super(parts);
+    const {store, stage} = parts;
     this.#gizmo = new Gizmo(stage.scene);
     for (const event of ['selection', 'mode', 'document', 'entity', 'overlays'] as const) {
       store.listen(event, () => {
@@ -72,34 +59,34 @@ export class Manipulator {
 
   /** The one that has the handles: the last selected model or light. */
   get target(): string|null {
-    const {mode, selection} = this.#store;
+    const {mode, selection} = this.store;
     if (!isGizmoMode(mode)) return null;
     const name = selection.at(-1);
-    const entity = name ? this.#store.entity(name) : null;
+    const entity = name ? this.store.entity(name) : null;
     if (!name || !entity || this.#isLocked(entity)) return null;
     if (entity.kind === 'link') {
-      return this.#store.modelEditing?.name === entity.model.name ? name : entity.model.name;
+      return this.store.modelEditing?.name === entity.model.name ? name : entity.model.name;
     }
     if (entity.kind === 'light' && mode === 'scale') return null;
     return name;
   }
 
   #isLocked({model, light}: EntityRef) {
-    return this.#store.overlay('locked', (model ?? light)?.name);
+    return this.store.overlay('locked', (model ?? light)?.name);
   }
 
   /** Puts the handles where the target is shown. */
   update() {
     const name = this.target;
-    const {mode} = this.#store;
+    const {mode} = this.store;
     this.#gizmo.show(name && isGizmoMode(mode) ? mode : null);
     const pose = name && this.#shown(name);
     if (pose) {
-      const turned = this.#worldAxes && this.#store.mode !== 'scale';
+      const turned = this.#worldAxes && this.store.mode !== 'scale';
       const axes = turned ? [0, 0, 0, 1] : orientation(pose);
-      this.#gizmo.place([...position(pose), ...axes], this.#rig.unitAt(position(pose)));
+      this.#gizmo.place([...position(pose), ...axes], this.rig.unitAt(position(pose)));
     }
-    this.#stage.invalidate();
+    this.stage.invalidate();
   }
 
   /**
@@ -109,7 +96,7 @@ export class Manipulator {
   hover(event: MousePoint): boolean {
     this.#worldAxesWith(Boolean(event.shiftKey));
     const axis = this.#handleUnder(event);
-    if (this.#gizmo.light(axis)) this.#stage.invalidate();
+    if (this.#gizmo.light(axis)) this.stage.invalidate();
     return axis !== null;
   }
 
@@ -120,7 +107,7 @@ export class Manipulator {
    * @returns whether the drag is ours
    */
   grab(event: MousePoint, pick: () => Under|null, key: AxisName|null): boolean {
-    const {mode} = this.#store;
+    const {mode} = this.store;
     if (!isGizmoMode(mode)) return false;
     const handle = this.#handleUnder(event);
     const name = this.target;
@@ -128,7 +115,7 @@ export class Manipulator {
     if (handle && name && pose) return this.#take(event, name, handle, position(pose), key);
     const body = pick();
     if (!body) return false;
-    if (!this.#store.selection.includes(body.name)) this.#store.select(this.#group(body.name));
+    if (!this.store.selection.includes(body.name)) this.store.select(this.#group(body.name));
     if (mode !== 'translate' && !key) return true;
     if (this.target === null) return true;
     return this.#take(event, body.name, null, body.point, key);
@@ -138,7 +125,7 @@ export class Manipulator {
   drag(event: MousePoint, key: AxisName|null) {
     if (!this.#grasp) return;
     this.#lastEvent = event;
-    const ray = this.#picker.ray(event.clientX, event.clientY);
+    const ray = this.picker.ray(event.clientX, event.clientY);
     this.#rebase(ray, event, key);
     const made = this.#apply(ray, event, key);
     if (!made) return;
@@ -168,8 +155,8 @@ export class Manipulator {
       return;
     }
     const outcome = result.factors
-      ? await this.#actions.scale(grasp.name, result.factors)
-      : await this.#actions.move(result.poses, LABELS[grasp.mode]);
+      ? await this.actions.scale(grasp.name, result.factors)
+      : await this.actions.move(result.poses, LABELS[grasp.mode]);
     this.#end(grasp, outcome.ok && !result.factors);
   }
 
@@ -182,7 +169,7 @@ export class Manipulator {
     if (!grasp) return false;
     this.#grasp = this.#result = this.#lastEvent = null;
     if (grasp.sent) {
-      this.#connection.send('drag', this.#message({[grasp.name]: grasp.first, ...grasp.others}));
+      this.connection.send('drag', this.#message({[grasp.name]: grasp.first, ...grasp.others}));
     }
     this.#end(grasp, false);
     return true;
@@ -191,70 +178,70 @@ export class Manipulator {
   /** Ends the drag if the grasped entity was deleted. The simulator reports who deleted it. */
   #dropGone() {
     const grasp = this.#grasp;
-    if (!grasp || this.#store.entity(grasp.name)) return;
+    if (!grasp || this.store.entity(grasp.name)) return;
     this.#grasp = this.#result = this.#lastEvent = null;
     this.#end(grasp, false);
   }
 
   #message(poses: Record<string, Pose7>) {
-    const names = Object.keys(poses).filter((name) => this.#store.model(name));
+    const names = Object.keys(poses).filter((name) => this.store.model(name));
     return {names, poses: names.map((name) => poses[name])};
   }
 
   #end(grasp: Grasp, keep: boolean) {
     this.onNumbers('');
-    if (grasp.sent) this.#connection.send('drag_end');
+    if (grasp.sent) this.connection.send('drag_end');
     const names = [grasp.name, ...Object.keys(grasp.others)];
     // A next drag may have begun while the simulator answered.
     if (this.#grasp && names.includes(this.#grasp.name)) return;
-    for (const name of names) this.#models.fade(name, false);
-    this.#models.release(names, {keep});
-    if (!keep) this.#moveLights(Object.fromEntries(names.map((name) => [name, this.#store.light(name)?.pose])));
+    for (const name of names) this.models.fade(name, false);
+    this.models.release(names, {keep});
+    if (!keep) this.#moveLights(Object.fromEntries(names.map((name) => [name, this.store.light(name)?.pose])));
     this.#moved();
   }
 
   #group(name: string) {
-    return groupAround(membersOf(this.#store.document), name);
+    return groupAround(membersOf(this.store.document), name);
   }
 
   #shown(name: string) {
     if (this.#grasp?.name === name && this.#result?.poses) return this.#result.poses[name];
-    return this.#models.shownPose(name);
+    return this.models.shownPose(name);
   }
 
   #handleUnder(event: MousePoint) {
     if (!this.#gizmo.shown) return null;
-    const [hit] = this.#picker.objects(this.#gizmo.grips, event.clientX, event.clientY);
+    const [hit] = this.picker.objects(this.#gizmo.grips, event.clientX, event.clientY);
     return hit ? Gizmo.axisOf(hit.object) : null;
   }
 
   #take(event: MousePoint, name: string, handle: AxisName|null, point: Vec3, key: AxisName|null) {
-    const {mode} = this.#store;
-    const model = this.#store.model(name);
+    const {mode} = this.store;
+    const model = this.store.model(name);
     if (mode === 'scale' && (!model || !model.scalable)) {
-      this.#store.addIssue({severity: 'note', code: 'not-scalable',
+      this.store.addIssue({severity: 'note', code: 'not-scalable',
         message: `${name} cannot be scaled: only models with one link and simple shapes can be scaled.`});
       return true;
     }
-    const pose = this.#models.shownPose(name);
+    const pose = this.models.shownPose(name);
     if (!pose || !isGizmoMode(mode)) return false;
     const others: Record<string, Pose7> = {};
     if (mode !== 'scale') {
       // Of what is selected, all moves along; only the members of its group turn along.
-      for (const other of this.#store.selection) {
-        const along = other !== name && this.#store.entity(other)?.kind !== 'link' &&
+      for (const other of this.store.selection) {
+        const along = other !== name && this.store.entity(other)?.kind !== 'link' &&
           (mode === 'translate' || this.#group(name).includes(other));
-        const shown = along && this.#models.shownPose(other);
+        const shown = along && this.models.shownPose(other);
         if (shown) others[other] = shown;
       }
     }
-    const size = mode === 'scale' ? this.#models.bounds(name, pose) : null;
+    const size = mode === 'scale' ? this.models.bounds(name, pose) : null;
     const grasp: Grasp = {name, mode, handle, start: pose, first: pose, point, others, sent: false,
       size: size ? size.max.clone().sub(size.min).toArray() : [1, 1, 1],
-      ray: this.#picker.ray(event.clientX, event.clientY), how: howOf(handle, key, event)};
+      ray: this.picker.ray(event.clientX, event.clientY), how: howOf(handle, key, event)};
     grasp.point = graspedPoint(grasp, point);
     this.#grasp = grasp;
-    for (const one of [name, ...Object.keys(others)]) this.#models.fade(one, true);
+    for (const one of [name, ...Object.keys(others)]) this.models.fade(one, true);
     return true;
   }
 
@@ -302,7 +289,7 @@ export class Manipulator {
     const distance = alongAxis(ray, grasp.point, axis);
     const from = alongAxis(grasp.ray, grasp.point, axis) ?? 0;
     if (distance === null) return null;
-    const model = this.#store.model(grasp.name);
+    const model = this.store.model(grasp.name);
     if (!model) return null;
     return {factors: scaled(grasp.size, AXIS_INDEX[axisName], distance - from,
       {snap, uniform: Boolean(event.shiftKey), kind: roundness(model)})};
@@ -311,16 +298,16 @@ export class Manipulator {
   #show({poses, factors}: DragResult) {
     const name = this.#grasp?.name;
     if (name === undefined) return;
-    if (factors) this.#models.stretch(name, factors);
+    if (factors) this.models.stretch(name, factors);
     else {
       this.#moveLights(poses);
-      this.#models.hold(Object.fromEntries(Object.entries(poses).filter(([one]) => !this.#store.light(one))));
+      this.models.hold(Object.fromEntries(Object.entries(poses).filter(([one]) => !this.store.light(one))));
     }
     this.#moved();
   }
 
   #moveLights(poses: Record<string, Pose7|undefined>) {
-    for (const [name, pose] of Object.entries(poses)) if (pose && this.#store.light(name)) this.#lights.move(name, pose);
+    for (const [name, pose] of Object.entries(poses)) if (pose && this.store.light(name)) this.lights.move(name, pose);
   }
 
   #moved() {
@@ -336,7 +323,7 @@ export class Manipulator {
     if (!message.names.length) return;
     this.#lastSent = now;
     if (this.#grasp) this.#grasp.sent = true;
-    this.#connection.send('drag', message);
+    this.connection.send('drag', message);
   }
 
   #worldAxesWith(shift: boolean) {

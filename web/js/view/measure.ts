@@ -3,6 +3,7 @@ import {Group, LineBasicMaterial, Mesh, MeshBasicMaterial} from 'three';
 import {measures} from '../measure_math.js';
 import {label} from './label_sprite.js';
 import {ball, empty, segments} from './markers.js';
+import {ViewPart} from './view_part.js';
 import type {Vec3} from '../pose.js';
 import type {ViewParts} from './view.js';
 import type {MousePoint} from './pointer.js';
@@ -14,18 +15,16 @@ const DOT_PIXELS = 5;
 const lineMaterial = new LineBasicMaterial({color: COLOR, depthTest: false, transparent: true, fog: false});
 const dotMaterial = new MeshBasicMaterial({color: COLOR, depthTest: false, transparent: true, fog: false});
 
-export class Measure {
+export class Measure extends ViewPart {
   #points: Vec3[] = [];
   #group = new Group();
-  #stage;
-  #rig;
   #selector;
   /** What is shown, in words. */
   texts: string[] = [];
 
-  constructor({store, stage, rig, selector}: ViewParts & {selector: Selector}) {
-    this.#stage = stage;
-    this.#rig = rig;
+  constructor(parts: ViewParts & {selector: Selector}) {
+    super(parts);
+    const {store, stage, selector} = parts;
     this.#selector = selector;
     stage.scene.add(this.#group);
     store.listen('mode', () => {
@@ -44,7 +43,7 @@ export class Measure {
   follow() {
     for (const child of this.#group.children) {
       if (child instanceof Mesh) {
-        child.scale.setScalar(DOT_PIXELS * this.#rig.unitAt(child.position.toArray()));
+        child.scale.setScalar(DOT_PIXELS * this.rig.unitAt(child.position.toArray()));
       }
     }
   }
@@ -75,6 +74,6 @@ export class Measure {
       this.#group.add(sprite);
     });
     this.follow();
-    this.#stage.invalidate();
+    this.stage.invalidate();
   }
 }

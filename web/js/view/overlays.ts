@@ -9,6 +9,7 @@ import {place} from './three_convert.js';
 import {meshOf, visualParts} from './shape_meshes.js';
 import {arrow, ball, boxLines, empty, free, segments, through, triad} from './markers.js';
 import {patternCanvas} from './builtin_textures.js';
+import {ViewPart} from './view_part.js';
 import type {Box3, Object3D} from 'three';
 import type {Contact, Joint, Link, Model} from '../protocol.js';
 import type {OverlayFlag} from '../store.js';
@@ -121,12 +122,7 @@ function skeletonMark(model: Model, link: Link) {
   return group;
 }
 
-export class Overlays {
-  #store;
-  #models;
-  #stage;
-  #stock;
-  #watches;
+export class Overlays extends ViewPart {
   /** Groups of marks by model name, then by link id. */
   #groups: Map<string, Map<number, Group>> = new Map();
   #contacts = new Group();
@@ -134,12 +130,9 @@ export class Overlays {
   /** Models that are selected. */
   #selected: Set<string> = new Set();
 
-  constructor({store, models, stage, stock, watches}: ViewParts) {
-    this.#store = store;
-    this.#models = models;
-    this.#stage = stage;
-    this.#stock = stock;
-    this.#watches = watches;
+  constructor(parts: ViewParts) {
+    super(parts);
+    const {store, stage} = parts;
     stage.scene.add(this.#contacts);
     store.listen('document', () => this.#rebuildAll());
     store.listen('selection', () => this.#selectionChanged());
@@ -170,7 +163,7 @@ export class Overlays {
     for (const links of this.#groups.values()) {
       for (const [id, group] of links) {
         if (ids && !ids.has(id)) continue;
-        const matrix = this.#models.linkMatrix(id);
+        const matrix = this.models.linkMatrix(id);
         if (!matrix) continue;
         group.matrix.copy(matrix);
         group.matrixWorldNeedsUpdate = true;
@@ -181,41 +174,41 @@ export class Overlays {
   /** What is shown of the selection alone goes with it. */
   #selectionChanged() {
     const before = this.#selected;
-    this.#selected = new Set(this.#store.selection.flatMap((name) =>
-      this.#store.split(name)[0]?.name ?? []));
-    if (!Object.values(this.#store.overlays.selection).some(Boolean)) return;
+    this.#selected = new Set(this.store.selection.flatMap((name) =>
+      this.store.split(name)[0]?.name ?? []));
+    if (!Object.values(this.store.overlays.selection).some(Boolean)) return;
     for (const name of new Set([...before, ...this.#selected])) this.#rebuild(name);
     this.#watchContacts();
   }
 
   #flagsChanged({flag, model, layer}: {flag?: OverlayFlag, model?: string|undefined, layer?: number}) {
-    const names = model ? [model] : this.#store.document?.models.map(({name}) => name) ?? [];
+    const names = model ? [model] : this.store.document?.models.map(({name}) => name) ?? [];
     if (layer !== undefined || ['transparent', 'wireframe', 'hidden', 'cameraColors', 'simplifiedMeshes'].includes(flag ?? '')) {
-      for (const name of names) this.#models.rebuild(name);
+      for (const name of names) this.models.rebuild(name);
     }
     if (flag && PER_MODEL.includes(flag)) for (const name of names) this.#rebuild(name);
     if (flag === 'contacts') this.#watchContacts();
-    this.#stage.invalidate();
+    this.stage.invalidate();
   }
 
   #rebuildAll() {
     for (const name of [...this.#groups.keys()]) this.#drop(name);
-    for (const {name} of this.#store.document?.models ?? []) this.#rebuild(name);
+    for (const {name} of this.store.document?.models ?? []) this.#rebuild(name);
     this.#watchContacts();
   }
 
   #drop(name: string) {
     for (const group of this.#groups.get(name)?.values() ?? []) {
       free(group);
-      this.#stage.scene.remove(group);
+      this.stage.scene.remove(group);
     }
     this.#groups.delete(name);
   }
 
   #rebuild(name: string) {
     this.#drop(name);
-    const model = this.#store.model(name);
-    const flags = PER_MODEL.filter((flag) => this.#store.overlay(flag, name));
+    const model = this.store.model(name);
+    const flags = PER_MODEL.filter((flag) => this.store.overlay(flag, name));
     if (!model || !flags.length) return;
     const links: Map<number, Group> = new Map();
     this.#groups.set(name, links);
@@ -224,10 +217,10 @@ export class Overlays {
       group.matrixAutoUpdate = false;
       for (const flag of flags) this.#fill(group, flag, model, link);
       links.set(link.id, group);
-      this.#stage.scene.add(group);
+      this.stage.scene.add(group);
     }
     this.follow(null);
-    this.#stage.invalidate();
+    this.stage.invalidate();
   }
 
   #fill(group: Group, flag: OverlayFlag, model: Model, link: Link) {
@@ -236,12 +229,12 @@ export class Overlays {
     else if (flag === 'skeleton') add(skeletonMark(model, link));
     else if (flag === 'collisions') this.#addCollisions(group, link);
     else if (flag === 'joints') {
-      const most = JOINT_PART * (this.#models.bounds(model.name)?.getSize(new Vector3()).length() ?? Infinity);
+      const most = JOINT_PART * (this.models.bounds(model.name)?.getSize(new Vector3()).length() ?? Infinity);
       for (const joint of model.joints) if (joint.child === link.name) add(jointMark(joint, most));
     } else if (!model.static) {
       const name = `${model.name}::${link.name}`;
       if (flag === 'com') {
-        add(massMark(link, this.#models.bounds(name, this.#models.shownPose(name))));
+        add(massMark(link, this.models.bounds(name, this.models.shownPose(name))));
       } else add(inertiaMark(link));
     }
   }
@@ -256,9 +249,9 @@ export class Overlays {
           mesh.renderOrder = 5;
           group.add(mesh);
         }
-        this.#stage.invalidate();
+        this.stage.invalidate();
       };
-      const parts = visualParts(collision, this.#stock, {material: collisionMaterial});
+      const parts = visualParts(collision, this.stock, {material: collisionMaterial});
       if (parts instanceof Promise) parts.then(add);
       else add(parts);
     }
@@ -266,7 +259,7 @@ export class Overlays {
 
   #watchContacts() {
     const wanted = this.#contactsWanted();
-    if (wanted && !this.#unwatch) this.#unwatch = this.#watches?.add('contacts') ?? null;
+    if (wanted && !this.#unwatch) this.#unwatch = this.watches?.add('contacts') ?? null;
     if (!wanted && this.#unwatch) {
       this.#unwatch();
       this.#unwatch = null;
@@ -275,15 +268,15 @@ export class Overlays {
   }
 
   #contactsWanted() {
-    const {scene, models, selection} = this.#store.overlays;
-    return scene.contacts || (selection.contacts && this.#store.selection.length > 0) || Object.values(models).some(({contacts}) => contacts);
+    const {scene, models, selection} = this.store.overlays;
+    return scene.contacts || (selection.contacts && this.store.selection.length > 0) || Object.values(models).some(({contacts}) => contacts);
   }
 
   #showContacts(contacts: Contact[]) {
     if (!contacts.length && !this.#contacts.children.length) return;
     empty(this.#contacts);
     const shown = contacts.filter(({a, b}) =>
-      [a, b].some((name) => this.#store.overlay('contacts', this.#store.split(name)[0]?.name ?? '')));
+      [a, b].some((name) => this.store.overlay('contacts', this.store.split(name)[0]?.name ?? '')));
     const lines: Vec3[] = [];
     for (const {position, normal, depth} of shown) {
       const mark = new Mesh(ball, contactMaterial);
@@ -295,6 +288,6 @@ export class Overlays {
         position, position.map((part, i) => part - depth * normal[i]));
     }
     if (lines.length) this.#contacts.add(segments(lines, normalMaterial));
-    this.#stage.invalidate();
+    this.stage.invalidate();
   }
 }

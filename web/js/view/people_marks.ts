@@ -3,25 +3,21 @@ import {Color, LineBasicMaterial, Vector3} from 'three';
 import {colorOf} from '../person_color.js';
 import {label} from './label_sprite.js';
 import {boxLines, fitBox, ICON_SIZE} from './markers.js';
+import {ViewPart} from './view_part.js';
 import type {LineSegments, Sprite} from 'three';
 import type {Person} from '../protocol.js';
 import type {ViewParts} from './view.js';
 
 const MARGIN = 0.03;
 
-export class PeopleMarks {
-  #store;
-  #models;
-  #stage;
+export class PeopleMarks extends ViewPart {
   #marks: {name: string, box: LineSegments, text: Sprite}[] = [];
   #materials: Map<string, LineBasicMaterial> = new Map();
 
-  constructor({store, models, stage}: ViewParts) {
-    this.#store = store;
-    this.#models = models;
-    this.#stage = stage;
+  constructor(parts: ViewParts) {
+    super(parts);
     for (const event of ['people', 'document', 'entity'] as const) {
-      store.listen(event, () => this.#rebuild());
+      this.store.listen(event, () => this.#rebuild());
     }
   }
 
@@ -29,18 +25,18 @@ export class PeopleMarks {
   get shown() { return this.#marks.map(({name}) => name); }
 
   #rebuild() {
-    const {others} = this.#store;
+    const {others} = this.store;
     if (!others.length && !this.#marks.length) return;
-    for (const {box, text} of this.#marks.splice(0)) this.#stage.scene.remove(box, text);
+    for (const {box, text} of this.#marks.splice(0)) this.stage.scene.remove(box, text);
     for (const person of others) {
       for (const name of new Set([...person.held, ...person.selected])) this.#add(person, name);
     }
     this.follow(null);
-    this.#stage.invalidate();
+    this.stage.invalidate();
   }
 
   #add(person: Person, name: string) {
-    if (!this.#store.entity(name)) return;
+    if (!this.store.entity(name)) return;
     const color = colorOf(person);
     const material = this.#materials.get(color) ??
       new LineBasicMaterial({color: new Color(color), fog: false});
@@ -50,20 +46,20 @@ export class PeopleMarks {
     const text = label(person.held.includes(name) ? `${person.name} is moving it` : person.name,
       color);
     this.#marks.push({name, box, text});
-    this.#stage.scene.add(box, text);
+    this.stage.scene.add(box, text);
   }
 
   /** Moves the marks of models with moved links; null: all marks. */
   follow(ids: Set<number>|null) {
     for (const {name, box, text} of this.#marks) {
-      const links = this.#store.entity(name)?.model?.links;
+      const links = this.store.entity(name)?.model?.links;
       if (ids && !links?.some(({id}) => ids.has(id))) continue;
-      const pose = this.#models.shownPose(name);
+      const pose = this.models.shownPose(name);
       box.visible = text.visible = pose !== null;
       if (!pose) continue;
-      fitBox(box, pose, this.#models.bounds(name, pose), MARGIN);
+      fitBox(box, pose, this.models.bounds(name, pose), MARGIN);
       text.position.copy(box.position);
-      text.position.z += this.#models.bounds(name)?.getSize(new Vector3()).z ?? ICON_SIZE;
+      text.position.z += this.models.bounds(name)?.getSize(new Vector3()).z ?? ICON_SIZE;
     }
   }
 }

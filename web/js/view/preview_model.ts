@@ -2,28 +2,28 @@
 import {Box3, Vector3} from 'three';
 import {standaloneModel} from './standalone_model.js';
 import {place} from './three_convert.js';
+import {ViewPart} from './view_part.js';
 import type {ViewParts} from './view.js';
 
-export class Preview {
-  #parts;
+export class Preview extends ViewPart {
   #shown: ReturnType<typeof standaloneModel>|null = null;
   /** What of it the camera was last turned to. */
   #framed: Box3|null = null;
 
-  constructor(parts: Pick<ViewParts, 'store'|'stage'|'stock'|'rig'|'picker'>) {
-    this.#parts = parts;
+  constructor(parts: ViewParts) {
+    super(parts);
     parts.store.listen('preview', () => this.#show());
   }
 
   /** The link of the model under a point of the page. */
   pick(clientX: number, clientY: number): {link: string}|null {
     if (!this.#shown) return null;
-    const [hit] = this.#parts.picker.objects([this.#shown.group], clientX, clientY);
+    const [hit] = this.picker.objects([this.#shown.group], clientX, clientY);
     return hit ? {link: hit.object.parent?.name ?? ''} : null;
   }
 
   #show() {
-    const {store: {preview}, stage, stock} = this.#parts;
+    const {store: {preview}, stage, stock} = this;
     if (this.#shown) {
       stage.scene.remove(this.#shown.group);
       this.#shown.dispose();
@@ -47,6 +47,6 @@ export class Preview {
   #frame(box: Box3) {
     if (box.isEmpty() || this.#framed?.containsBox(box)) return;
     this.#framed = box.clone().expandByScalar(box.getSize(new Vector3()).length() * 0.15);
-    this.#parts.rig.flyTo(this.#framed);
+    this.rig.flyTo(this.#framed);
   }
 }

@@ -8,14 +8,13 @@ import {
   contactsShape, frameShape, mapShape, markerShape, pathShape, pointsShape, rangeShape, scanShape,
   TOPIC_COLORS, trailShape,
 } from './topic_shapes.js';
+import {ViewPart} from './view_part.js';
 import type {Object3D} from 'three';
 import type {FramePlace} from '../topics/frame_places.js';
 import type {Life} from '../topics/marker_lives.js';
 import type {Marker, OdometryView} from '../protocol.js';
-import type {Models} from './model_views.js';
 import type {Pose7, Vec3} from '../pose.js';
-import type {Stage} from './stage.js';
-import type {Store} from '../store.js';
+import type {ViewParts} from './view.js';
 import type {Topics, TopicView} from '../topics/topics.js';
 
 /** Points of a trail, and how far apart they are at least, m. */
@@ -83,20 +82,15 @@ function free(object: Object3D) {
   }
 }
 
-export class TopicMarks {
-  #store;
-  #models;
-  #stage;
+export class TopicMarks extends ViewPart {
   #topics;
   #marks: Map<string, Mark> = new Map();
   #count = 0;
   #clock = new SimClock();
 
-  constructor({store, models, stage, topics}: {store: Store, models: Models, stage: Stage,
-      topics: Topics}) {
-    this.#store = store;
-    this.#models = models;
-    this.#stage = stage;
+  constructor(parts: ViewParts & {topics: Topics}) {
+    super(parts);
+    const {store, topics} = parts;
     this.#topics = topics;
     topics.listen('view', ({detail}) => this.#show(detail));
     topics.listen('shown', () => this.#drop());
@@ -129,10 +123,10 @@ export class TopicMarks {
 
   /** Takes away markers whose time is over. */
   #tick() {
-    const {sim_ns: sim, factor, paused} = this.#store.stats;
+    const {sim_ns: sim, factor, paused} = this.store.stats;
     this.#clock.tell(sim / 1e9, paused ? 0 : factor, performance.now());
     const changed = [...this.#marks.values()].filter((mark) => mark.expire(sim / 1e9));
-    if (changed.length) this.#stage.invalidate();
+    if (changed.length) this.stage.invalidate();
   }
 
   #drop() {
@@ -140,16 +134,16 @@ export class TopicMarks {
     for (const [name, mark] of this.#marks) {
       if (shown.has(name)) continue;
       mark.clear();
-      this.#stage.scene.remove(mark.group);
+      this.stage.scene.remove(mark.group);
       this.#marks.delete(name);
-      this.#stage.invalidate();
+      this.stage.invalidate();
     }
   }
 
   /** Puts everything where its frame is by now. */
   #placeAll() {
     for (const [topic, mark] of this.#marks) this.#placeParts(topic, mark);
-    if (this.#marks.size) this.#stage.invalidate();
+    if (this.#marks.size) this.stage.invalidate();
   }
 
   #placeParts(topic: string, mark: Mark) {
@@ -166,13 +160,13 @@ export class TopicMarks {
     if (!mark) {
       mark = new Mark(TOPIC_COLORS[this.#count++ % TOPIC_COLORS.length]);
       this.#marks.set(topic, mark);
-      this.#stage.scene.add(mark.group);
+      this.stage.scene.add(mark.group);
     }
     if (type !== 'transforms') mark.clear();
     this.#fill(mark, view);
     mark.group.traverse((object) => { object.frustumCulled = false; });
     this.#placeParts(topic, mark);
-    this.#stage.invalidate();
+    this.stage.invalidate();
   }
 
   #fill(mark: Mark, {head, buffer, start}: TopicView) {
@@ -221,13 +215,13 @@ export class TopicMarks {
   #anchor(topic: string, child: string, pose: Pose7): Pose7|null {
     const where = this.#topics.placeOf(topic, child);
     const model = this.#topics.topic(topic)?.model;
-    const now = where ? this.#worldPose(where) : (model && this.#store.worldPose(model)) || null;
+    const now = where ? this.#worldPose(where) : (model && this.store.worldPose(model)) || null;
     return now ? compose(now, inverse(pose)) : null;
   }
 
   #worldPose({link, pose}: FramePlace) {
     if (link === null) return pose;
-    const carrier = this.#store.poses.get(link);
+    const carrier = this.store.poses.get(link);
     return carrier ? compose(carrier, pose) : null;
   }
 
@@ -244,7 +238,7 @@ export class TopicMarks {
   }
 
   #put({group, place: where}: Part) {
-    const carrier = where && where.link !== null ? this.#models.linkMatrix(where.link) : null;
+    const carrier = where && where.link !== null ? this.models.linkMatrix(where.link) : null;
     group.visible = where !== null && carrier !== undefined;
     if (!where || carrier === undefined) return;
     const own = matrixOf(where.pose, new Matrix4());
