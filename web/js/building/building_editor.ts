@@ -105,12 +105,14 @@ export async function mount(element: HTMLElement, {store, request, actions}: {st
   const preview = new Preview({store, session, request, onIssues: (found) => { issues = found; drawSoon(); }});
   const around = onceAFrame(() => canvas.showAround(actions.footprints(opened?.name)));
   around();
+  const ended = new AbortController();
+  const {signal} = ended;
+  listenToKeys(element, {session, files: opening, exit: leave, draw: drawSoon, cursor: planCursor({session, canvas}), signal});
+  listenToView(byId('view'), {session, actions, signal});
+  window.addEventListener('beforeunload', (event) => { if (session.dirty) event.preventDefault(); }, {signal});
   const ends = [
     ...(['document', 'entity', 'poses'] as const).map((event) => store.listen(event, around)),
-    listenToKeys(element, {session, files: opening, exit: leave, draw: drawSoon,
-      cursor: planCursor({session, canvas})}),
-    listenToView(byId('view'), {session, actions}), () => preview.end(),
-    watchSize(sheet, canvas), askBeforeUnload(session), unlisten,
+    () => ended.abort(), () => preview.end(), watchSize(sheet, canvas), unlisten,
   ];
   const wasRunning = !store.stats.paused;
   if (wasRunning) await actions.pause();
@@ -254,10 +256,4 @@ function watchSize(sheet: HTMLElement, canvas: Canvas) {
   const observer = new ResizeObserver(() => canvas.place());
   observer.observe(sheet);
   return () => observer.disconnect();
-}
-
-function askBeforeUnload(session: Session) {
-  const asked = (event: Event) => { if (session.dirty) event.preventDefault(); };
-  window.addEventListener('beforeunload', asked);
-  return () => window.removeEventListener('beforeunload', asked);
 }

@@ -117,11 +117,10 @@ const OF_THE_PAGE = new Set(['building', 'fullScreen', 'hotkeys', 'togglePanels'
 /**
  * Keys of the building editor. All of the page's keys are its own while it is open, wherever the focus
  * is: the world's keys would change models that are not shown.
- * @returns stops listening
  */
-export function listenToKeys(element: HTMLElement, {session, files, exit, draw, cursor}: {session: Session,
+export function listenToKeys(element: HTMLElement, {session, files, exit, draw, cursor, signal}: {session: Session,
     files: FileCommands, exit: () => void, draw: () => void,
-    cursor: (event: KeyboardEvent) => boolean}): () => void {
+    cursor: (event: KeyboardEvent) => boolean, signal: AbortSignal}) {
   let typed = '';
   const run: Record<string, () => unknown> = {
     'Ctrl+S': () => files.save(), 'Ctrl+Shift+S': () => files.saveAs(), 'Ctrl+O': () => files.open(),
@@ -171,12 +170,8 @@ export function listenToKeys(element: HTMLElement, {session, files, exit, draw, 
   }
 
   const forget = () => { typed = ''; };   // a click has ended the wall that it was typed for
-  window.addEventListener('keydown', onKeyDown, true);
-  element.addEventListener('pointerdown', forget, true);
-  return () => {
-    window.removeEventListener('keydown', onKeyDown, true);
-    element.removeEventListener('pointerdown', forget, true);
-  };
+  window.addEventListener('keydown', onKeyDown, {capture: true, signal});
+  element.addEventListener('pointerdown', forget, {capture: true, signal});
 }
 
 /** The parts of the editor that F6 visits, by what takes the focus there. */
@@ -195,12 +190,9 @@ function spelling(event: KeyboardEvent) {
     event.shiftKey && (event.ctrlKey || event.metaKey || key === 'F6') ? 'Shift' : '', key].filter(Boolean).join('+');
 }
 
-/**
- * Painting in the 3D view: hovering shows, a click paints.
- * @returns stops listening
- */
-export function listenToView(view: HTMLElement|null, {session, actions}: {session: Session,
-    actions: Actions}): () => void {
+/** Painting in the 3D view: hovering shows, a click paints. */
+export function listenToView(view: HTMLElement|null, {session, actions, signal}: {session: Session,
+    actions: Actions, signal: AbortSignal}) {
   const target = (event: MouseEvent) => {
     const link = actions.previewPick(event.clientX, event.clientY)?.link;
     const found = link ? itemOfLink(session.history.plan, link) : null;
@@ -229,6 +221,5 @@ export function listenToView(view: HTMLElement|null, {session, actions}: {sessio
   const listeners: ['pointermove'|'pointerdown'|'pointerup'|'contextmenu', (event: MouseEvent) =>
       void][] = [['pointermove', move], ['pointerdown', press], ['pointerup', release],
     ['contextmenu', away]];
-  for (const [name, listener] of listeners) view?.addEventListener(name, listener, true);
-  return () => listeners.forEach(([name, listener]) => view?.removeEventListener(name, listener, true));
+  for (const [name, listener] of listeners) view?.addEventListener(name, listener, {capture: true, signal});
 }

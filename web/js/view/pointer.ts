@@ -39,10 +39,9 @@ const slop = ({touch}: Press) => (touch ? TOUCH_PIXELS : CLICK_PIXELS);
 
 /** Keys that are down, and only while the page has the keyboard. */
 class HeldKeys {
-  dispose;
   #down: Set<string> = new Set();
 
-  constructor(target: Window, onChange: (event: KeyState, key: string) => void) {
+  constructor(target: Window, onChange: (event: KeyState, key: string) => void, signal: AbortSignal) {
     const change = (event: KeyboardEvent) => {
       const key = event.key.toLowerCase();
       if (event.type === 'keydown') {
@@ -55,14 +54,9 @@ class HeldKeys {
       this.#down.clear();
       onChange({}, '');
     };
-    target.addEventListener('keydown', change);
-    target.addEventListener('keyup', change);
-    target.addEventListener('blur', clear);
-    this.dispose = () => {
-      target.removeEventListener('keydown', change);
-      target.removeEventListener('keyup', change);
-      target.removeEventListener('blur', clear);
-    };
+    target.addEventListener('keydown', change, {signal});
+    target.addEventListener('keyup', change, {signal});
+    target.addEventListener('blur', clear, {signal});
   }
 
   has(key: string) { return this.#down.has(key); }
@@ -73,44 +67,34 @@ class HeldKeys {
 
 export class Pointer {
   #parts;
-  #keys = new HeldKeys(window, (event) => this.#keysChanged(event));
+  #keys;
   #touch;
   #press: Press|null = null;
-  /** Each stops one listener. */
-  #listeners: (() => void)[] = [];
 
-  constructor(parts: ViewParts & PointerParts) {
+  /** @param signal  ends the listeners */
+  constructor(parts: ViewParts & PointerParts, signal: AbortSignal) {
     this.#parts = parts;
-    const {canvas} = parts.stage;
+    this.#keys = new HeldKeys(window, (event) => this.#keysChanged(event), signal);
+    const on = <T extends keyof HTMLElementEventMap>(type: T, listener: (event: HTMLElementEventMap[T]) => void) =>
+      parts.stage.canvas.addEventListener(type, listener, {signal, passive: false});
     this.#touch = new Touch(parts, (event) => this.#longPress(event));
-    this.#listen(canvas, 'pointerdown', (event) => this.#down(event));
-    this.#listen(canvas, 'pointermove', (event) => this.#move(event));
-    this.#listen(canvas, 'pointerup', (event) => this.#up(event));
-    this.#listen(canvas, 'pointercancel', (event) => {
+    on('pointerdown', (event) => this.#down(event));
+    on('pointermove', (event) => this.#move(event));
+    on('pointerup', (event) => this.#up(event));
+    on('pointercancel', (event) => {
       this.#touch.up(event);
       this.#abandon();
     });
-    this.#listen(canvas, 'pointerleave', () => this.#leave());
-    this.#listen(canvas, 'dblclick', (event) => this.#parts.selector.flyTo(event));
-    this.#listen(canvas, 'wheel', (event) => this.#wheel(event), {passive: false});
-    this.#listen(canvas, 'contextmenu', (event) => event.preventDefault());
-    this.#listen(canvas, 'dragover', (event) => {
+    on('pointerleave', () => this.#leave());
+    on('dblclick', (event) => this.#parts.selector.flyTo(event));
+    on('wheel', (event) => this.#wheel(event));
+    on('contextmenu', (event) => event.preventDefault());
+    on('dragover', (event) => {
       event.preventDefault();
       this.#parts.placer.follow(event);
     });
-    this.#listen(canvas, 'dragleave', () => this.#parts.placer.hide());
-    this.#listen(canvas, 'drop', (event) => this.#drop(event));
-  }
-
-  dispose() {
-    this.#keys.dispose();
-    for (const end of this.#listeners) end();
-  }
-
-  #listen<T extends keyof HTMLElementEventMap>(target: HTMLElement, type: T,
-      listener: (event: HTMLElementEventMap[T]) => void, options?: AddEventListenerOptions) {
-    target.addEventListener(type, listener, options);
-    this.#listeners.push(() => target.removeEventListener(type, listener));
+    on('dragleave', () => this.#parts.placer.hide());
+    on('drop', (event) => this.#drop(event));
   }
 
   #down(event: PointerEvent) {

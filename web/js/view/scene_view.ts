@@ -68,7 +68,6 @@ export class SceneView {
   #forces;
   #boxes;
   #overlays;
-  #pointer;
   #actors;
   #surroundings;
   #marks;
@@ -81,7 +80,7 @@ export class SceneView {
   /** Names of the models that are shown elsewhere. */
   #shifted: string[] = [];
   #pictured = false;
-  #hands;
+  #ended = new AbortController();
 
   constructor(element: HTMLElement, {store, actions, connection, watches, topics,
       resolveUrl}: ViewOptions) {
@@ -127,15 +126,14 @@ export class SceneView {
     mountLookSwitch(element, {store, actions});
     this.#preview = new Preview(shared);
     this.placer = new Placer(shared);
-    this.#pointer = new Pointer({...shared, manipulator: this.#manipulator,
+    new Pointer({...shared, manipulator: this.#manipulator,
       placer: this.placer, faceSnap: this.#snap, forces: this.#forces,
       selector, measure: this.#measure, pivotMark: new PivotMark(shared),
       boxSelect: new BoxSelect(element, store, (name) =>
         // The box never selects the ground.
-        (this.footprint(name) ? this.pixelOf(name) : null))});
+        (this.footprint(name) ? this.pixelOf(name) : null))}, this.#ended.signal);
     this.#connect(batches);
-    this.#hands = new AbortController();
-    giveWayTo(element, stage, this.#hands.signal);
+    giveWayTo(element, stage, this.#ended.signal);
     actions.attachView(this);
     const kept = savedConfiguration();
     Object.assign(store.overlays.scene, {simplifiedMeshes: stage.software}, kept?.overlays);
@@ -174,8 +172,7 @@ export class SceneView {
 
   dispose() {
     this.#actors.dispose();
-    this.#hands.abort();
-    this.#pointer.dispose();
+    this.#ended.abort();
     this.#stage.dispose();
   }
 
