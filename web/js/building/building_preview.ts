@@ -2,6 +2,7 @@
 import {RequestError} from '../connection.js';
 import {faultText} from '../ui/dialog.js';
 import {isEmpty, withoutImages} from './plan.js';
+import {withParts} from '../parts.js';
 import type {Fault} from './plan_check.js';
 import type {Model, Operation, Plan} from '../protocol.js';
 import type {Pose7} from '../pose.js';
@@ -13,19 +14,13 @@ import type {Store} from '../store.js';
 const PAUSE = 120;
 const LONGEST_PAUSE = 2000;
 
-export class Preview {
-  store;
-  session;
-  request;
-  onIssues;
+type PreviewParts = {store: Store, session: Session, request: RequestFunction, onIssues: (issues: Fault[]) => void};
 
-  constructor({store, session, request, onIssues}: {store: Store, session: Session,
-      request: RequestFunction,
-    onIssues: (issues: Fault[]) => void}) {
-    this.store = store;
-    this.session = session;
-    this.request = request;
-    this.onIssues = onIssues;
+export class Preview extends withParts<PreviewParts>() {
+
+  constructor(parts: PreviewParts) {
+    super(parts);
+    const {session} = parts;
     this.#unlisten = session.listen('change', this.#changed);
     this.#changed();
   }

@@ -9,6 +9,7 @@ import {ConnectTool} from './connect_tool.js';
 import {linkNames, ownSteps, renamedModel, stepsSince} from '../model_edits.js';
 import {ModelFiles} from './model_files.js';
 import {Palette} from './model_palette.js';
+import {withParts} from '../parts.js';
 import type {Actions} from '../actions.js';
 import type {RequestFunction} from '../connection.js';
 import type {Model} from '../protocol.js';
@@ -20,19 +21,13 @@ type EditorParts = {store: Store, request: RequestFunction, actions: Actions, no
 /** Shown of the edited model alone. */
 const OVERLAYS = ['joints', 'transparent'] as const;
 
-export class ModelEditor {
-  store;
-  request;
-  actions;
-  notices;
+export class ModelEditor extends withParts<EditorParts>() {
   files;
   connect;
 
-  constructor({store, request, actions, notices}: EditorParts) {
-    this.store = store;
-    this.request = request;
-    this.actions = actions;
-    this.notices = notices;
+  constructor(parts: EditorParts) {
+    super(parts);
+    const {request} = parts;
     this.files = new ModelFiles(request);
     this.connect = new ConnectTool(this);
   }

@@ -6,6 +6,7 @@ import {add, length, scale, subtract} from '../pose.js';
 import {cornersOf} from './three_convert.js';
 import {readLink} from '../view_link.js';
 import {isGround} from '../selected_model.js';
+import {withParts} from '../parts.js';
 import type {GuiCamera} from '../protocol.js';
 import type {Vec3} from '../pose.js';
 import type {View} from '../camera_math.js';
@@ -26,7 +27,7 @@ const TURN_FLIGHT = 1000;
 const calm = () => globalThis.matchMedia?.('(prefers-reduced-motion: reduce)').matches ?? false;
 const WALK_SPEED = {ahead: 1, aside: 0.8};
 
-export class CameraRig {
+export class CameraRig extends withParts<Pick<ViewParts, 'stage'|'store'|'models'>>() {
   view: View = views.HOME;
   /** Resolution (pixels per meter) when orthographic. */
   zoomLevel = views.ORTHOGRAPHIC_ZOOM;
@@ -35,9 +36,6 @@ export class CameraRig {
   /** How many of the things that move are hidden by others from a place. */
   hiddenFrom: (eye: Vec3) => number = () => 0;
 
-  #stage;
-  #store;
-  #models;
   #home = views.HOME;
   #flight: {from: View, to: View, began: number, duration: number}|null = null;
   #walking = {ahead: 0, aside: 0, fast: false};
@@ -53,10 +51,9 @@ export class CameraRig {
   #framed: View|null = null;
   #whole = new Box3();
 
-  constructor({stage, store, models}: Pick<ViewParts, 'stage'|'store'|'models'>) {
-    this.#stage = stage;
-    this.#store = store;
-    this.#models = models;
+  constructor(parts: Pick<ViewParts, 'stage'|'store'|'models'>) {
+    super(parts);
+    const {store} = parts;
     store.listen('document', () => this.#openWorld());
     store.listen('entity', ({detail: {kind, value}}) => {
       if (kind === 'world' && value.gui_camera) this.#takeCamera(value.gui_camera);
@@ -66,13 +63,13 @@ export class CameraRig {
     this.apply();
   }
 
-  get orthographic() { return this.#store.camera.projection === 'orthographic'; }
-  get fov() { return views.verticalFov(this.#stage.aspect); }
+  get orthographic() { return this.store.camera.projection === 'orthographic'; }
+  get fov() { return views.verticalFov(this.stage.aspect); }
 
   /** Metres a pixel covers at a point. */
   unitAt(point: Vec3) {
     return this.orthographic ? 1 / this.zoomLevel
-      : views.metresPerPixel(this.view, point, this.fov, this.#stage.height);
+      : views.metresPerPixel(this.view, point, this.fov, this.stage.height);
   }
 
   /** The point some 10 m ahead, for moves that have nothing under the mouse. */
@@ -122,7 +119,7 @@ export class CameraRig {
   walk(ahead: number, aside: number, fast: boolean) {
     if (!this.#walking.ahead && !this.#walking.aside) this.#lastWalk = performance.now();
     this.#walking = {ahead, aside, fast};
-    if (ahead || aside) this.#stage.invalidate();
+    if (ahead || aside) this.stage.invalidate();
   }
 
   /** Flies to a view. */
@@ -132,15 +129,15 @@ export class CameraRig {
       return;
     }
     this.#flight = {from: this.view, to, began: performance.now(), duration};
-    this.#stage.invalidate();
+    this.stage.invalidate();
   }
 
   flyTo(box: Box3) {
     if (this.orthographic) {
       const size = Math.max(length(subtract(box.max.toArray(), box.min.toArray())), 0.2);
-      this.zoomLevel = Math.min(this.#stage.width, this.#stage.height) / size / 1.1;
+      this.zoomLevel = Math.min(this.stage.width, this.stage.height) / size / 1.1;
     }
-    this.fly(views.framing(this.view, cornersOf(box), this.fov, this.#stage.aspect));
+    this.fly(views.framing(this.view, cornersOf(box), this.fov, this.stage.aspect));
   }
 
   /** Flies most of the way to a point. */
@@ -164,7 +161,7 @@ export class CameraRig {
       this.fly(views.fromSide(this.view, side, centre), TURN_FLIGHT);
       return;
     }
-    if (this.#store.camera.following) this.#store.setCamera({following: null});
+    if (this.store.camera.following) this.store.setCamera({following: null});
     if (this.#isInside(this.#home.position)) {
       this.frame();
       return;
@@ -180,7 +177,7 @@ export class CameraRig {
   frame(names: string[] = []) {
     const whole = new Box3();
     for (const name of names.length ? names : this.#standing()) {
-      const box = this.#models.bounds(name);
+      const box = this.models.bounds(name);
       if (box) whole.union(box);
     }
     if (!whole.isEmpty()) this.flyTo(whole);
@@ -189,30 +186,30 @@ export class CameraRig {
 
   /** Flies to where the inside of a model without a roof is seen: its walls hide little of it. */
   lookInto(name: string) {
-    const box = this.#models.bounds(name);
-    if (box) this.fly(views.first(cornersOf(box), this.fov, this.#stage.aspect, views.STEEP));
+    const box = this.models.bounds(name);
+    if (box) this.fly(views.first(cornersOf(box), this.fov, this.stage.aspect, views.STEEP));
   }
 
   /** Gives what is looked at its present size in an orthographic view. */
   keepScale() {
     const whole = new Box3();
-    for (const name of this.#standing()) whole.union(this.#models.bounds(name) ?? new Box3());
+    for (const name of this.#standing()) whole.union(this.models.bounds(name) ?? new Box3());
     const centre = whole.getCenter(new Vector3()).toArray();
     const away = subtract(centre, this.view.position);
     const depth = views.forward(this.view).reduce((sum, part, at) => sum + part * away[at], 0);
     const point = whole.isEmpty() || depth <= 0 ? this.ahead : centre;
-    this.zoomLevel = 1 / views.metresPerPixel(this.view, point, this.fov, this.#stage.height);
+    this.zoomLevel = 1 / views.metresPerPixel(this.view, point, this.fov, this.stage.height);
   }
 
   /** Whether a point is in the box around a model. */
   #isInside(point: Vec3) {
     const at = new Vector3(...point);
-    return this.#standing().some((name) => this.#models.bounds(name)?.containsPoint(at));
+    return this.#standing().some((name) => this.models.bounds(name)?.containsPoint(at));
   }
 
   /** Models that are no grounds. */
   #standing() {
-    return (this.#store.document?.models ?? []).filter((model) => !isGround(model))
+    return (this.store.document?.models ?? []).filter((model) => !isGround(model))
       .map((model) => model.name);
   }
 
@@ -245,11 +242,11 @@ export class CameraRig {
 
   /** Goes with what is followed. */
   follow() {
-    const name = this.#store.camera.following;
+    const name = this.store.camera.following;
     if (!name) return;
-    const pose = this.#models.shownPose(name);
+    const pose = this.models.shownPose(name);
     if (!pose) {
-      this.#store.setCamera({following: null});
+      this.store.setCamera({following: null});
       return;
     }
     if (this.#followed) {
@@ -264,23 +261,23 @@ export class CameraRig {
 
   /** Gives the view to the three camera. */
   apply() {
-    const {perspective, orthographic} = this.#stage;
+    const {perspective, orthographic} = this.stage;
     const camera = this.orthographic ? orthographic : perspective;
-    this.#stage.camera = camera;
+    this.stage.camera = camera;
     const ahead = new Vector3().fromArray(views.forward(this.view));
     const side = new Vector3().fromArray(views.right(this.view));
     const top = new Vector3().fromArray(views.up(this.view));
     camera.position.fromArray(this.view.position);
     camera.quaternion.setFromRotationMatrix(new Matrix4().makeBasis(side, top, ahead.negate()));
     perspective.fov = this.fov * 180 / Math.PI;
-    perspective.aspect = this.#stage.aspect;
-    const [halfWidth, halfHeight] = [this.#stage.width / 2, this.#stage.height / 2];
+    perspective.aspect = this.stage.aspect;
+    const [halfWidth, halfHeight] = [this.stage.width / 2, this.stage.height / 2];
     Object.assign(orthographic, {left: -halfWidth, right: halfWidth, top: halfHeight,
       bottom: -halfHeight, zoom: this.zoomLevel});
     camera.updateProjectionMatrix();
     camera.updateMatrixWorld();
     this.onMoved();
-    this.#stage.invalidate();
+    this.stage.invalidate();
   }
 
   /** The world's camera was edited. */
@@ -297,8 +294,8 @@ export class CameraRig {
 
   /** A world that comes again, after a lost line say, is looked at as before. */
   #openWorld(address = globalThis.location?.hash ?? '') {
-    if (!this.#store.document) return;
-    const {gui_camera: camera, file, name} = this.#store.document;
+    if (!this.store.document) return;
+    const {gui_camera: camera, file, name} = this.store.document;
     const which = JSON.stringify([file, name]);
     if (which === this.#world) {
       if (this.view === this.#framed) this.#beginWithAll();
@@ -322,13 +319,13 @@ export class CameraRig {
         this.#toFrame = [];
         this.set(link.view);
       }
-      this.#store.select(link.selection.filter((name) => this.#store.entity(name)));
+      this.store.select(link.selection.filter((name) => this.store.entity(name)));
     }
-    this.#store.setCamera({
+    this.store.setCamera({
       projection: camera ? (camera.projection_type === 'orthographic' ? 'orthographic' : 'perspective')
         : kept?.projection ?? 'perspective',
       controller: camera ? (camera.view_controller === 'fps' ? 'fps' : 'orbit') : kept?.controller ?? 'orbit',
-      following: camera?.track && this.#store.model(camera.track) ? camera.track : null,
+      following: camera?.track && this.store.model(camera.track) ? camera.track : null,
     });
   }
 
@@ -337,7 +334,7 @@ export class CameraRig {
    * walk about, as in Gazebo.
    */
   #beginWithAll() {
-    const {actors = []} = this.#store.document ?? {};
+    const {actors = []} = this.store.document ?? {};
     this.#toFrame = actors.length ? [] : this.#standing();
     this.#home = views.HOME;
     this.set(this.#home);
@@ -351,7 +348,7 @@ export class CameraRig {
     if (!this.#toFrame.length || this.view !== this.#framed) return;
     const whole = new Box3();
     for (const name of this.#toFrame) {
-      const box = this.#models.bounds(name);
+      const box = this.models.bounds(name);
       if (box) whole.union(box);
     }
     if (whole.isEmpty() || whole.equals(this.#whole)) return;
@@ -364,7 +361,7 @@ export class CameraRig {
   /** Returns a view of a box: the flattest of some directions that hides the fewest moving things. */
   #firstLook(box: {min: Vec3, max: Vec3}) {
     const looks = views.FIRST_PITCHES.map((pitch) =>
-      views.first(box, this.fov, this.#stage.aspect, pitch));
+      views.first(box, this.fov, this.stage.aspect, pitch));
     let [best] = looks;
     let fewest = Infinity;
     for (const look of looks) {
@@ -378,7 +375,7 @@ export class CameraRig {
   #applyChoices() {
     this.#followed = null;
     this.follow();
-    if (this.#store.camera.controller !== 'fps') this.walk(0, 0, false);
+    if (this.store.camera.controller !== 'fps') this.walk(0, 0, false);
     this.apply();
   }
 }

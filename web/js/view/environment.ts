@@ -11,6 +11,7 @@ import {free} from './markers.js';
 import {roadStrip} from './road_strip.js';
 import {colorOf} from './three_convert.js';
 import {Gradient, WorldSky, leavesBackground} from './sky.js';
+import {withParts} from '../parts.js';
 import type {Materials} from './materials.js';
 import type {Road} from '../protocol.js';
 import type {Stage} from './stage.js';
@@ -45,10 +46,7 @@ const ASPHALT = {texture: {pattern: 'road', scale: [1, 1]}};
 /** Where the view's own haze begins and ends, in distances of the eye from what it looks at. */
 const HAZE = {from: 5, to: 22, nearest: 45};
 
-export class Surroundings {
-  #stage;
-  #store;
-  #materials;
+export class Surroundings extends withParts<{stage: Stage, store: Store, materials: Materials}>() {
   #grid = new GroundGrid();
   #origin = makeOrigin();
   #sky = new WorldSky();
@@ -59,10 +57,9 @@ export class Surroundings {
   /** What they were laid for. */
   #laid: Road[] = [];
 
-  constructor({stage, store, materials}: {stage: Stage, store: Store, materials: Materials}) {
-    this.#stage = stage;
-    this.#store = store;
-    this.#materials = materials;
+  constructor(parts: {stage: Stage, store: Store, materials: Materials}) {
+    super(parts);
+    const {stage, store} = parts;
     stage.scene.add(this.#grid.mesh, this.#origin, this.#contact.mesh);
     stage.onShadows = (renderer, scene) => this.#contact.render(renderer, scene);
     store.listen('document', () => this.#apply());
@@ -89,22 +86,22 @@ export class Surroundings {
   }
 
   #flags() {
-    const {scene} = this.#store.document ?? {};
-    this.#grid.mesh.visible = this.#store.overlays.scene.grid && scene?.grid !== false;
-    this.#origin.visible = this.#store.overlays.scene.origin && scene?.origin_visual !== false;
-    this.#stage.invalidate();
+    const {scene} = this.store.document ?? {};
+    this.#grid.mesh.visible = this.store.overlays.scene.grid && scene?.grid !== false;
+    this.#origin.visible = this.store.overlays.scene.origin && scene?.origin_visual !== false;
+    this.stage.invalidate();
   }
 
   /** Contact shadows belong to a world with shadows. */
   #ground() {
-    const {document} = this.#store;
+    const {document} = this.store;
     return document?.scene.shadows ? groundHeight(document.models) : null;
   }
 
   #apply() {
-    if (!this.#store.document) return;
-    const {scene: settings} = this.#store.document;
-    const {scene} = this.#stage;
+    if (!this.store.document) return;
+    const {scene: settings} = this.store.document;
+    const {scene} = this.stage;
     scene.remove(this.#sky.dome, this.#gradient.dome);
     scene.fog = fogOf(settings.fog);
     scene.background = scene.fog && !settings.sky ? scene.fog.color.clone()
@@ -115,27 +112,27 @@ export class Surroundings {
       this.#sky.take(settings.sky);
       scene.add(this.#sky.dome);
       distant = this.#sky.horizon;
-    } else if (leavesBackground(settings) && !this.#store.overlays.scene.cameraColors) {
+    } else if (leavesBackground(settings) && !this.store.overlays.scene.cameraColors) {
       scene.add(this.#gradient.dome);
       distant = this.#gradient.horizon;
       scene.fog = this.#haze = new Fog(distant, HAZE.nearest, 4 * HAZE.nearest);
     }
-    this.#materials.setDistance(distant);
+    this.materials.setDistance(distant);
     this.#contact.stand(this.#ground());
     this.#layRoads();
     this.#flags();
   }
 
   #layRoads() {
-    const {scene} = this.#stage;
-    const roads = this.#store.document?.roads ?? [];
+    const {scene} = this.stage;
+    const roads = this.store.document?.roads ?? [];
     if (roads === this.#laid) return;
     this.#laid = roads;
     scene.remove(...this.#roads);
     this.#roads.forEach(free);
     this.#roads = roads.filter(({points}) => points.length > 1).map((road) => {
       const mesh = new Mesh(ribbon(road),
-        this.#materials.get(road.material ?? ASPHALT, {}, {doubleSided: true}));
+        this.materials.get(road.material ?? ASPHALT, {}, {doubleSided: true}));
       mesh.receiveShadow = true;
       scene.add(mesh);
       return mesh;

@@ -6,10 +6,10 @@ import {
 import {free} from './markers.js';
 import {leavesAmbient} from './sky.js';
 import {lightColorOf, place} from './three_convert.js';
+import {withParts} from '../parts.js';
 import type {Light} from '../protocol.js';
 import type {Pose7} from '../pose.js';
-import type {Stage} from './stage.js';
-import type {Store} from '../store.js';
+import type {ViewParts} from './view.js';
 
 type Lamp = DirectionalLight|PointLight|SpotLight;
 /** A light of the world with its lamp and its icon in the view. */
@@ -111,16 +111,14 @@ function prepareShadow(lamp: Lamp) {
   lamp.shadow.radius = SOFT;
 }
 
-export class Lights {
-  #stage;
-  #store;
+export class Lights extends withParts<Pick<ViewParts, 'stage'|'store'>>() {
   #ambient = new HemisphereLight(0xffffff, 0x8a8680, 1);
   #entries: Map<string, LightEntry> = new Map();
   #focus = {centre: new Vector3(1e9, 0, 0), reach: 0};
 
-  constructor({stage, store}: {stage: Stage, store: Store}) {
-    this.#stage = stage;
-    this.#store = store;
+  constructor(parts: Pick<ViewParts, 'stage'|'store'>) {
+    super(parts);
+    const {stage, store} = parts;
     this.#ambient.position.set(0, 0, 1);
     stage.scene.add(this.#ambient);
     store.listen('document', () => this.#rebuild());
@@ -140,8 +138,8 @@ export class Lights {
 
   /** A hidden light still shines. */
   #hideIcons() {
-    for (const [name, {icon}] of this.#entries) icon.visible = !this.#store.overlay('hidden', name);
-    this.#stage.invalidate();
+    for (const [name, {icon}] of this.#entries) icon.visible = !this.store.overlay('hidden', name);
+    this.stage.invalidate();
   }
 
   /** Shows a light elsewhere while it is dragged. */
@@ -150,7 +148,7 @@ export class Lights {
     if (!entry) return;
     place(entry.icon, pose);
     this.#aim(entry, {...entry.light, pose});
-    this.#stage.shadowsChanged();
+    this.stage.shadowsChanged();
   }
 
   /**
@@ -165,18 +163,18 @@ export class Lights {
     if (now.distanceTo(wanted) < width * 0.25 && reach < width * 1.2 && reach > width * 0.5) return;
     this.#focus = {centre: wanted, reach: Math.min(Math.max(reach, 2), 80)};
     for (const entry of this.#entries.values()) this.#aim(entry, entry.light);
-    this.#stage.shadowsChanged();
+    this.stage.shadowsChanged();
   }
 
   /** Lets the edges of shadows be soft, or as sharp as is quickest. */
   soften(soft: boolean) {
     for (const {lamp} of this.#entries.values()) {
-      if (lamp.shadow) lamp.shadow.radius = soft || !this.#stage.software ? SOFT : 0;
+      if (lamp.shadow) lamp.shadow.radius = soft || !this.stage.software ? SOFT : 0;
     }
   }
 
   #rebuild() {
-    const {scene} = this.#stage;
+    const {scene} = this.stage;
     for (const {lamp, icon} of this.#entries.values()) {
       scene.remove(lamp, icon);
       free(icon);
@@ -184,11 +182,11 @@ export class Lights {
       lamp.dispose();
     }
     this.#entries.clear();
-    if (!this.#store.document) return;
-    const {lights, scene: settings} = this.#store.document;
+    if (!this.store.document) return;
+    const {lights, scene: settings} = this.store.document;
     this.#ambient.color.copy(lightColorOf(settings.ambient));
     this.#ambient.groundColor.copy(this.#ambient.color).multiplyScalar(0.6);
-    if (leavesAmbient(settings) && !this.#store.overlays.scene.cameraColors) {
+    if (leavesAmbient(settings) && !this.store.overlays.scene.cameraColors) {
       this.#ambient.color.multiply(FROM_ABOVE);
       this.#ambient.groundColor.multiply(FROM_BELOW);
     }
@@ -207,7 +205,7 @@ export class Lights {
       this.#aim(entry, light);
     }
     this.#hideIcons();
-    this.#stage.shadowsChanged();
+    this.stage.shadowsChanged();
   }
 
   #aim({lamp}: LightEntry, light: Light) {

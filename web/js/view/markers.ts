@@ -4,6 +4,7 @@ import {
   Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, Quaternion, SphereGeometry, Vector3,
 } from 'three';
 import {place} from './three_convert.js';
+import {withParts} from '../parts.js';
 import type {CameraRig} from './camera_rig.js';
 import type {Box3, ColorRepresentation, Material, Object3D} from 'three';
 import type {Numbers, Vec3} from '../pose.js';
@@ -94,28 +95,25 @@ export function empty(group: Object3D) {
 }
 
 /** The small yellow ball that marks what the camera turns about. */
-export class PivotMark {
+export class PivotMark extends withParts<{stage: Stage, rig: CameraRig}>() {
   #mesh = new Mesh(ball, through(0xffd60a, 0.9));
-  #stage;
-  #rig;
 
-  constructor({stage, rig}: {stage: Stage, rig: CameraRig}) {
-    this.#stage = stage;
-    this.#rig = rig;
+  constructor(parts: {stage: Stage, rig: CameraRig}) {
+    super(parts);
     this.#mesh.visible = false;
     this.#mesh.renderOrder = 90;
-    stage.scene.add(this.#mesh);
+    this.stage.scene.add(this.#mesh);
   }
 
   show(place: Vec3) {
     this.#mesh.visible = true;
     this.#mesh.position.fromArray(place);
-    this.#mesh.scale.setScalar(4 * this.#rig.unitAt(place));
+    this.#mesh.scale.setScalar(4 * this.rig.unitAt(place));
   }
 
   hide() {
     if (!this.#mesh.visible) return;
     this.#mesh.visible = false;
-    this.#stage.invalidate();
+    this.stage.invalidate();
   }
 }

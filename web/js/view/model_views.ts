@@ -4,13 +4,12 @@ import {compose, displacement, inverse} from '../pose.js';
 import {ModelView, radiusOf} from './link_views.js';
 import {matrixOf} from './three_convert.js';
 import {boxOf, visualParts} from './shape_meshes.js';
-import type {Batches} from './batches.js';
+import {withParts} from '../parts.js';
 import type {LinkView} from './link_views.js';
 import type {Model, Visual} from '../protocol.js';
-import type {Part, Stock} from './shape_meshes.js';
+import type {Part} from './shape_meshes.js';
 import type {Pose7, Vec3} from '../pose.js';
-import type {Stage} from './stage.js';
-import type {Store} from '../store.js';
+import type {ViewParts} from './view.js';
 
 /** of an item */
 export type Owner = {model: string, link: string, linkId: number, plane: boolean};
@@ -19,11 +18,7 @@ export type Owner = {model: string, link: string, linkId: number, plane: boolean
 const STILL = 0.7;
 const CREEPING = 2.5;
 
-export class Models {
-  #store;
-  #batches;
-  #stock;
-  #stage;
+export class Models extends withParts<Pick<ViewParts, 'store'|'batches'|'stock'|'stage'>>() {
   #views: Map<string, ModelView> = new Map();
   /** By link id. */
   #byLink: Map<number, ModelView> = new Map();
@@ -35,12 +30,9 @@ export class Models {
   /** Links that have moved, but not so far that it is seen. */
   #late: Set<number> = new Set();
 
-  constructor({store, batches, stock, stage}: {store: Store, batches: Batches,
-    stock: Stock, stage: Stage}) {
-    this.#store = store;
-    this.#batches = batches;
-    this.#stock = stock;
-    this.#stage = stage;
+  constructor(parts: Pick<ViewParts, 'store'|'batches'|'stock'|'stage'>) {
+    super(parts);
+    const {store} = parts;
     store.listen('document', () => this.#whileHolding(() => this.rebuildAll()));
     store.listen('entity', ({detail: {name, kind, value}}) => {
       if (kind === 'model') this.#whileHolding(() => this.#replace(name, value));
@@ -68,12 +60,12 @@ export class Models {
 
   rebuildAll() {
     for (const name of [...this.#views.keys()]) this.#replace(name, null);
-    for (const model of this.#store.document?.models ?? []) this.#replace(model.name, model);
+    for (const model of this.store.document?.models ?? []) this.#replace(model.name, model);
   }
 
   /** Rebuilds a model after a change of its appearance. */
   rebuild(name: string) {
-    const model = this.#store.model(name);
+    const model = this.store.model(name);
     if (model) this.#replace(name, model);
   }
 
@@ -96,11 +88,11 @@ export class Models {
         this.#holdLink(name, pose);
         continue;
       }
-      const here = this.#store.worldPose(name);
+      const here = this.store.worldPose(name);
       if (!here) continue;
       const toModel = inverse(here);
       for (const [id, linkView] of view.links) {
-        const now = this.#store.poses.get(id);
+        const now = this.store.poses.get(id);
         if (now) this.#held.set(id, compose(pose, compose(toModel, now)));
         this.#moveLink(view, linkView);
       }
@@ -114,7 +106,7 @@ export class Models {
       this.#stretched.delete(name);
       for (const [view, id, linkView] of this.#linksOf(name)) {
         const pose = this.#held.get(id);
-        if (keep && pose) this.#store.poses.get(id)?.set(pose);
+        if (keep && pose) this.store.poses.get(id)?.set(pose);
         this.#held.delete(id);
         this.#moveLink(view, linkView);
       }
@@ -134,7 +126,7 @@ export class Models {
   #linksOf(name: string): [ModelView, number, LinkView][] {
     const view = this.#views.get(name);
     if (view) return [...view.links].map(([id, linkView]) => [view, id, linkView]);
-    const entity = this.#store.entity(name);
+    const entity = this.store.entity(name);
     const owner = entity?.kind === 'link' ? this.#views.get(entity.model.name) : null;
     const linkView = entity?.kind === 'link' ? owner?.links.get(entity.link.id) : null;
     return entity?.kind === 'link' && owner && linkView ? [[owner, entity.link.id, linkView]] : [];
@@ -164,7 +156,7 @@ export class Models {
    * @returns pose7
    */
   shownPose(name: string): number[]|null {
-    return this.#store.poseWith(name, (id) => this.#linkPose(id));
+    return this.store.poseWith(name, (id) => this.#linkPose(id));
   }
 
   /** The matrix of a link as it is shown. */
@@ -178,7 +170,7 @@ export class Models {
    * @returns null when nothing of it is drawn
    */
   bounds(name: string, frame: number[]|null = null): Box3|null {
-    const entity = this.#store.entity(name);
+    const entity = this.store.entity(name);
     if (!entity || entity.kind === 'light') return null;
     const view = this.#views.get(entity.model.name);
     const links = entity.kind === 'link' ? [view?.links.get(entity.link.id)] : view?.links.values();
@@ -197,7 +189,7 @@ export class Models {
   }
 
   #linkPose(id: number) {
-    return this.#held.get(id) ?? this.#store.poses.get(id);
+    return this.#held.get(id) ?? this.store.poses.get(id);
   }
 
   #replace(name: string, model: Model|null) {
@@ -205,7 +197,7 @@ export class Models {
     if (before) {
       before.gone = true;
       for (const [id, {items}] of before.links) {
-        for (const item of items) this.#batches.remove(item);
+        for (const item of items) this.batches.remove(item);
         if (this.#byLink.get(id) === before) this.#byLink.delete(id);
       }
       this.#views.delete(name);
@@ -242,17 +234,17 @@ export class Models {
 
   #addVisual(view: ModelView, linkView: LinkView, visual: Visual) {
     const {name} = view.document;
-    if (this.#store.overlay('hidden', name)) return;
-    if (this.#store.overlays.hiddenLayers.has(visual.layer ?? 0)) return;
+    if (this.store.overlay('hidden', name)) return;
+    if (this.store.overlays.hiddenLayers.has(visual.layer ?? 0)) return;
     const look = {
-      opacity: this.#store.overlay('transparent', name) || this.#faded.has(name) ? 0.5 : 1,
-      wireframe: Boolean(this.#store.overlay('wireframe', name)),
+      opacity: this.store.overlay('transparent', name) || this.#faded.has(name) ? 0.5 : 1,
+      wireframe: Boolean(this.store.overlay('wireframe', name)),
     };
     const owner = {model: name, link: linkView.link.name, linkId: linkView.link.id,
       plane: visual.geometry.type === 'plane'};
     const add = (parts: Part[]) => {
       for (const part of parts) {
-        const item = this.#batches.add({...part, matrix: new Matrix4(), owner,
+        const item = this.batches.add({...part, matrix: new Matrix4(), owner,
           castShadow: visual.cast_shadows && !owner.plane && !look.wireframe});
         item.local = part.matrix;
         linkView.items.push(item);
@@ -260,7 +252,7 @@ export class Models {
       linkView.radius = 0;
       this.#moveLink(view, linkView);
     };
-    const parts = visualParts(visual, this.#stock, look);
+    const parts = visualParts(visual, this.stock, look);
     if (!(parts instanceof Promise)) add(parts);
     else {
       parts.then((ready) => {
@@ -284,7 +276,7 @@ export class Models {
     }
     for (const item of linkView.items) {
       if (item.local) item.matrix.multiplyMatrices(linkView.matrix, item.local);
-      this.#batches.moved(item);
+      this.batches.moved(item);
     }
   }
 
@@ -299,11 +291,11 @@ export class Models {
       if (pixels < STILL) this.#late.add(id);
       else seen.add(id);
     }
-    if (this.#late.size) this.#stage.owe();
+    if (this.#late.size) this.stage.owe();
     if (!seen.size) return;
-    if (most < CREEPING && !this.#stage.creep()) {
+    if (most < CREEPING && !this.stage.creep()) {
       for (const id of seen) this.#late.add(id);
-      this.#stage.owe();
+      this.stage.owe();
       return;
     }
     for (const id of seen) {
@@ -325,7 +317,7 @@ export class Models {
   }
 
   #changed(ids: Set<number>|null) {
-    this.#stage.shadowsChanged();
+    this.stage.shadowsChanged();
     this.onMoved(ids);
   }
 }

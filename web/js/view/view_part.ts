@@ -1,9 +1,5 @@
-/** The base class of parts of the view. */
+/** The base class of parts of the view: it has the store, the stage and all else that they share. */
+import {withParts} from '../parts.js';
 import type {ViewParts} from './view.js';
 
-/** Has the parts that all share as fields: the store, the stage and so on. */
-export const ViewPart = class {
-  constructor(parts: ViewParts) {
-    Object.assign(this, parts);
-  }
-} as new (parts: ViewParts) => Readonly<ViewParts>;
+export const ViewPart = withParts<ViewParts>();
