@@ -41,6 +41,23 @@ def test_a_copy_of_what_stands_on_a_table_is_put_on_another_one(editor):
     assert editor.model("unit_box_clone")["pose"][:3] == approx([0.0, 2.0, 1.3], abs=0.03)
 
 
+def test_what_is_copied_in_one_page_is_pasted_in_another_page_of_the_browser(editor):
+    editor.place("Box")
+    page = editor.context.new_page()
+    try:
+        page.goto(editor.page.url)
+        wait_for(lambda: page.evaluate("Boolean(window.editor && editor.store.document)"),
+                 "the world in the second page")
+        editor.get("editor.actions.copy(['unit_box'])")
+        wait_for(lambda: page.evaluate("editor.store.clipboard?.items.length === 1"), "the copy")
+        page.locator("#view").focus()
+        page.keyboard.press("Control+v")
+        page.keyboard.press("Enter")
+        wait_for(lambda: editor.model("unit_box_clone"), "the pasted box")
+    finally:
+        page.close()
+
+
 @pytest.mark.parametrize("turn", [0.0, 0.4])
 def test_a_box_over_a_wall_lands_in_front_of_it(editor, turn):
     # The first view is from x = 5, y = -5.
