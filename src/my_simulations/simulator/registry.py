@@ -185,7 +185,10 @@ class Registry:
         """The entity of a model name. Raises UnknownEntityError."""
         found = self._entities.get(name)
         if found is None:
-            raise UnknownEntityError(f"unknown model '{name}'" + self._suggest_models(name))
+            nested = self.nested_model(name)
+            raise UnknownEntityError(
+                f"unknown model '{name}'" + self._suggest_models(name) if nested is None else
+                f"'{name}' is nested in model '{nested[0].model.name}'; name that model instead")
         return found
 
     def nested_model(self, name: str) -> Optional[Tuple[Entity, NestedModel]]:

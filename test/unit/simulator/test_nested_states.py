@@ -62,6 +62,11 @@ def test_a_nested_model_of_one_link_is_moved(sim):
         sim.states.set_model_state("outer::tree::deepest", Pose(), STILL)
 
 
+def test_a_nested_model_is_not_deleted(sim):
+    with pytest.raises(UnknownEntityError, match="'inner' is nested in model 'outer'; name that"):
+        sim.models.delete("inner")
+
+
 def test_properties_of_nested_models(sim):
     services, response = WorldServices(sim), SimpleNamespace()
     services.get_model(SimpleNamespace(model_name="outer::tree"), response)
