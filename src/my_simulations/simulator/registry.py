@@ -92,6 +92,7 @@ class Registry:
         self._entities: Dict[str, Entity] = {}
         # By model id, in the order of models: to remove one is independent of their number.
         self._plain_links: Dict[str, Dict[int, Tuple[Entity, int]]] = {}
+        self._plain_nested: Dict[str, Dict[int, NestedModel]] = {}
         self._with_plugins: Dict[int, Entity] = {}
         # By the name of a request; cleared when a model is added, removed or changed.
         self._joints: Dict[str, Tuple[Entity, Joint, int]] = {}
@@ -151,6 +152,8 @@ class Registry:
         self._joints.clear()
         for index, link in enumerate(entity.link_names):
             self._plain_links.setdefault(link, {})[entity.model_id] = entity, index
+        for nested in reversed(list(entity.nested.values())):
+            self._plain_nested.setdefault(nested.model.name, {})[entity.model_id] = nested
         if entity.has_plugins:
             self._with_plugins[entity.model_id] = entity
 
@@ -160,6 +163,10 @@ class Registry:
             del self._plain_links[link][entity.model_id]
             if not self._plain_links[link]:
                 del self._plain_links[link]
+        for name in {nested.model.name for nested in entity.nested.values()}:
+            del self._plain_nested[name][entity.model_id]
+            if not self._plain_nested[name]:
+                del self._plain_nested[name]
         self._with_plugins.pop(entity.model_id, None)
 
     def _sort_links(self, moved: Sequence[Entity]) -> None:
@@ -197,8 +204,11 @@ class Registry:
         if outermost:
             entity = self._entities[outermost]
             return (entity, entity.nested[rest]) if rest in entity.nested else None
-        return next(((entity, nested) for entity in self._entities.values()
-                     for nested in entity.nested.values() if nested.model.name == name), None)
+        found = self._plain_nested.get(name)
+        if found is None:
+            return None
+        entity = next(one for one in self._entities.values() if one.model_id in found)
+        return entity, found[entity.model_id]
 
     def link(self, name: str) -> Tuple[Entity, int]:
         """A link by `model::link` or by its plain name (the first in the world).

@@ -47,6 +47,18 @@ def test_states_of_nested_models_are_read_by_scoped_and_plain_names(sim):
             sim.states.model_state(unknown)
 
 
+def test_a_plain_name_is_that_of_the_first_model_until_it_is_deleted(sim):
+    other = Model("other", Pose((0.0, 0.0, 9.0)), links=[link("l")],
+                  models=[Model("inner", Pose((1.0, 0.0, 0.0)), links=[link("l")])])
+    sim.models.spawn(other)
+    assert position_of(sim, "inner") == pytest.approx((3.0, 1.0, 1.0))
+    sim.models.delete("outer")
+    assert position_of(sim, "inner") == pytest.approx((1.0, 0.0, 9.0))
+    sim.models.delete("other")
+    with pytest.raises(UnknownEntityError):
+        sim.states.model_state("inner")
+
+
 def test_nested_models_are_reference_frames(sim):
     assert position_of(sim, "outer", "outer::tree") == pytest.approx((0.0, -3.0, 0.0))
     sim.states.set_model_state("box", Pose((1.0, 0.0, 0.0)), STILL, "outer::inner")
