@@ -9,7 +9,8 @@ from conftest import box, ground
 from inline_engine import InlineEngine
 from running_simulator import started
 
-from my_simulations.description.world import World
+from my_simulations.description.model import Joint, Link, Model
+from my_simulations.description.world import Physics, World
 from my_simulations.engine.bullet.backend import BulletBackend
 from my_simulations.engine.process_engine import ProcessEngine
 from my_simulations.errors import CommandError
@@ -44,6 +45,22 @@ def test_what_is_attached_hangs_and_what_is_let_go_falls_at_g(sim):
     sim.clock.advance(200)
     fallen = 0.849 - pose(sim, "held").position[2]
     assert fallen == pytest.approx(9.8 * 0.2 ** 2 / 2, rel=0.01)
+
+
+@pytest.mark.parametrize("step", [0.001, 0.002, 0.005])
+@pytest.mark.parametrize("parent", ["post::post", "world"])
+def test_a_load_at_a_joint_does_not_make_it_yield(step, parent):
+    """Weight and a wrench; by 5 a dt^2 it would yield, 64 mm at steps of 5 ms."""
+    post = Model("post", links=[Link("post")], joints=[Joint("foot", "fixed", "world", "post")])
+    held = box("held", 0.1, 0.5)
+    held.pose = Pose((0.3, 0.0, 1.0))
+    sim = started(World(models=[post, held], physics=Physics(max_step_size=step)),
+                  engine=lambda: InlineEngine(BulletBackend))
+    sim.models.attach("grasp", parent, "held::link")
+    sim.wrenches.apply_wrench("held::link", (0.0, 200.0, -100.0), (0.0, 0.0, 0.0))
+    sim.clock.advance(round(0.5 / step))
+    assert pose(sim, "held").position == pytest.approx((0.3, 0.0, 1.0), abs=1e-5)
+    sim.close()
 
 
 def test_it_is_carried_without_slipping(sim):

@@ -26,6 +26,7 @@ from ..timed_forces import TimedEffort, TimedForce, TimedWrench
 from ..wrench_laws import AT_REST, WrenchLaw
 from .bodies import Axis, Body, Part, set_sleep
 from .body_events import BodyEvent
+from .carried_weight import add_velocity
 from .implicit_axes import ImplicitAxes, Motor
 from .joint_pid import MOST_EFFORT, PidController
 from .joint_servos import JointServos
@@ -297,7 +298,9 @@ class Forces(StepHelper):
         at, turn = read_com_pose(body.uid, part.index)
         force, torque = _in_world(wrench, part, turn) if wrench.law is None \
             else self._wrench_of_law(wrench, wrench.law, part.link_from_com.position)
-        if force != ZERO3:
+        if force != ZERO3 and body.rigid and body.ties:   # as `CarriedWeight`
+            add_velocity(body, scale(force, dt / part.mass))
+        elif force != ZERO3:
             pybullet.applyExternalForce(body.uid, part.index, force, at, pybullet.WORLD_FRAME)
         if torque != ZERO3 and body.rigid:
             # Compensates Bullet's damping, which reduces the added velocity in this step.

@@ -11,6 +11,7 @@ from ..commands import PhysicsSettings
 from . import bodies, extra_surfaces, joint_axes
 from .bodies import Body, Part
 from .body_events import BodyEvent
+from .carried_weight import CarriedWeight
 from .commanded_motion import PinnedBodies, PlanarMotion
 from .contact_settling import ContactSettling
 from .divergence_stop import DivergenceStop
@@ -97,6 +98,7 @@ class HelperSet:
         self.pinned = PinnedBodies(self.waker.around)
         self.book = ConstraintBook()
         self.ties = InterModelJoints(self.book)
+        self._carried_weight = CarriedWeight(lambda: self.ties.carried)
         self._decay = VelocityDecay()
         self.settling = ContactSettling(
             self._parameters, lambda: self.forces.loaded_bodies,
@@ -118,6 +120,7 @@ class HelperSet:
             self.settling,          # before: holds robots at rest, chooses the solver's accuracy
             self._decay,            # before: reduces velocities (velocity_decay of SDFormat)
             self.forces,            # before: applies forces and efforts
+            self._carried_weight,   # before: turns the weight of tied bodies into a velocity
             self.planar,            # before: sets velocities of models in the plane
             self._gyroscopic,       # after: corrects the attitude of bodies that tumble freely
             self._residual,         # after: removes friction of contacts without load

@@ -250,11 +250,15 @@ class InterModelJoints(BodyObserver):
     Constraints hold them, so limits, friction, damping, springs and motors of their axes do not
     act. Connected bodies do not sleep, and do not collide with each other (Gazebo behaviour). A
     joint is removed with either of the models that it connects.
+
+    Attributes:
+        carried: the rigid bodies that are connected and can move.
     """
 
     def __init__(self, book: ConstraintBook) -> None:
         self._book = book
         self._ties: List[_Tie] = []
+        self.carried: List[Body] = []
         self._anchor: Optional[End] = None
 
     def connect(self, command: ConnectModels, rows: Dict[int, End]) -> None:
@@ -280,6 +284,7 @@ class InterModelJoints(BodyObserver):
         self._ties.append(tie)
         tie.set_collision(False)
         tie.count(1)
+        self._update_carried()
 
     def _world(self) -> End:
         """Return a static body without a shape: constraints of rigid bodies need a second body."""
@@ -309,3 +314,9 @@ class InterModelJoints(BodyObserver):
         self._ties.remove(tie)
         self._book.remove(tie.constraints)
         tie.count(-1)
+        self._update_carried()
+
+    def _update_carried(self) -> None:
+        carried = {body.uid: body for tie in self._ties for body, _ in tie.ends
+                   if body.rigid and body.moves}
+        self.carried = [carried[uid] for uid in sorted(carried)]
