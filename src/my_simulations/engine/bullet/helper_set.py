@@ -16,6 +16,7 @@ from .commanded_motion import PinnedBodies, PlanarMotion
 from .contact_settling import ContactSettling
 from .divergence_stop import DivergenceStop
 from .forces import Forces
+from .gear_accuracy import GearAccuracy
 from .gyroscopic_rigid import GyroscopicRigid
 from .impact_watch import ImpactWatch
 from .joint_constraints import ConstraintBook, InterModelJoints
@@ -97,6 +98,7 @@ class HelperSet:
         self._gyroscopic = GyroscopicRigid(lambda: self.forces.wrenched_links)
         self.pinned = PinnedBodies(self.waker.around)
         self.book = ConstraintBook()
+        self._gears = GearAccuracy(self.book, self._parameters)
         self.ties = InterModelJoints(self.book)
         self._carried_weight = CarriedWeight(lambda: self.ties.carried)
         self._decay = VelocityDecay()
@@ -118,6 +120,7 @@ class HelperSet:
             self._friction,         # before: stores friction coefficients for pairs in contact
             self._restitution,      # before: stores restitutions for pairs that can collide
             self.settling,          # before: holds robots at rest, chooses the solver's accuracy
+            self._gears,            # before: requests accuracy for gears that yield
             self._decay,            # before: reduces velocities (velocity_decay of SDFormat)
             self.forces,            # before: applies forces and efforts
             self._carried_weight,   # before: turns the weight of tied bodies into a velocity

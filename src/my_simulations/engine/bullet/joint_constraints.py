@@ -56,21 +56,29 @@ class Constraint:
 
 
 class ConstraintBook:
-    """Stores all constraints of a world; makes and removes them in a safe order (see above)."""
+    """Stores all constraints of a world; makes and removes them in a safe order (see above).
+
+    Attributes:
+        gears: the constraints of gears.
+    """
 
     def __init__(self) -> None:
         self._made: List[Constraint] = []
+        self.gears: List[Constraint] = []
 
     def make(self, is_rigid: bool, made_with: Tuple[Any, ...], **changed_to: Any) -> Constraint:
         """Make a constraint; its arguments are attributes of `Constraint`."""
         made = Constraint(is_rigid, made_with, changed_to)
         made.make()
         self._made.append(made)
+        if made_with[4] == pybullet.JOINT_GEAR:
+            self.gears.append(made)
         return made
 
     def remove(self, going: Sequence[Constraint]) -> None:
         """Remove constraints; their bodies must still exist."""
         self._made = [one for one in self._made if one not in going]
+        self.gears = [one for one in self.gears if one not in going]
         lifted = [] if all(one.is_rigid for one in going) else [
             one for one in self._made if one.is_rigid]
         for one in (*lifted, *sorted(going, key=lambda each: not each.is_rigid)):

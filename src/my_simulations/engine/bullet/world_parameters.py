@@ -50,7 +50,7 @@ class WorldParameters:
     def __init__(self) -> None:
         self._settings = PhysicsSettings()
         self._accuracy = USUAL_ACCURACY
-        self._step_accuracy = USUAL_ACCURACY
+        self._step_accuracy = self._gear_accuracy = USUAL_ACCURACY
         self._spacing = 0.0          # requested for the next step; 0 for none
         self._splits = False
         self._slowest_bounce = LEAST_BOUNCE
@@ -84,6 +84,10 @@ class WorldParameters:
         if accuracy != self._accuracy:
             self._accuracy, self._is_changed = accuracy, True
 
+    def request_gear_accuracy(self, accuracy: Accuracy) -> None:
+        """Solve at least this exactly from the next step on, until the next request for gears."""
+        self._gear_accuracy, self._is_changed = accuracy, True
+
     def request_step_accuracy(self, accuracy: Accuracy) -> None:
         """Solve the next step at least this exactly."""
         self._step_accuracy, self._is_changed = accuracy, True
@@ -115,7 +119,7 @@ class WorldParameters:
         """Set what has changed before the next step."""
         if not self._is_changed:
             return
-        accuracies = (self._accuracy, self._step_accuracy)
+        accuracies = (self._accuracy, self._step_accuracy, self._gear_accuracy)
         wanted = {
             "numSolverIterations": round(
                 self._settings.iterations * max(1.0, self._settings.step_size / USUAL_STEP)
