@@ -6,6 +6,7 @@ reads and loads the world, and meanwhile rospy is imported and registered.
 from __future__ import annotations
 
 import gc
+import logging
 import os
 import signal
 import sys
@@ -260,8 +261,10 @@ class Server:
 
         from ..prompt_end import end_promptly
         from ..registration import advertise_topic
+        from .debug_filter import RospyDebugFilter
 
         self._profile.mark("rospy imported")
+        logging.getLogger("rosout").addFilter(RospyDebugFilter())
         threading.Thread(target=self._break_off, daemon=True).start()
         imports = threading.Thread(target=_import_interface, daemon=True)
         imports.start()
