@@ -156,6 +156,18 @@ def yielding_along(lever: Tuple[float, float], rate_gain: float, effort: float,
     return (u * total, v * total), (u * spared, v * spared)
 
 
+def remaining_share(bias: Vec3, other: Vec3, most: float) -> float:
+    """Return the share of a bias with which it and the other friction reach the limit.
+
+    0 if the other friction alone exceeds the limit, or if both together do not: then the edges of a
+    wheel that turns slide, not the wheel. `most`: the limit, N, or the load for forces per mu.
+    """
+    square, along, rest = dot(bias, bias), dot(bias, other), dot(other, other) - most * most
+    if rest >= 0.0 or square + 2.0 * along + rest <= 0.0:
+        return 0.0
+    return (sqrt(along * along - square * rest) - along) / square
+
+
 def isotropic(contacts: Sequence[ContactPoint], loads: Sequence[float], mine: Motion, bias: Vec3,
               mu: float, soft: float, yields: Yielding, grows: float,
               ) -> Tuple[List[Vec3], float, Vec3]:
@@ -189,7 +201,8 @@ def isotropic(contacts: Sequence[ContactPoint], loads: Sequence[float], mine: Mo
     mx, my, mz = mx / total, my / total, mz / total
     slip = sqrt(mx * mx + my * my + mz * mz)
     if not within:
-        return forces, slip, (0.0, 0.0, 0.0)
+        return forces, slip, scale(bias, remaining_share(
+            bias, (tx - mx / soft, ty - my / soft, tz - mz / soft), mu * total))
     bx, by, bz = (bx - grows * (mx / soft - ex), by - grows * (my / soft - ey),
                   bz - grows * (mz / soft - ez))
     left = min(1.0, mu * total / max(sqrt(bx * bx + by * by + bz * bz), 1e-300))

@@ -9,16 +9,17 @@ the joint of the link, h is a tensor that includes the mobility of the joint, an
 the effort on the joint causes in the step is added to v. So the friction on light wheels is stable,
 also under loops that are unstable in the air. B takes up what the other forces on the body are: it
 grows by a share of the force -(v + s F) / (s + h) until v = -s F. Without slip that holds a wheel
-on a slope. If mu applies along a direction and mu2 across it, M is the tensor of both, and the
-limit is |M^-1 F| = N. A fast wheel then meets -N M (M v) / |M v|: of all forces within this
-ellipse, the one that dissipates the most power.
+on a slope. At the limit only the part of B remains with which F reaches it. If mu applies along a
+direction and mu2 across it, M is the tensor of both, and the limit is |M^-1 F| = N. A fast wheel
+then meets -N M (M v) / |M v|: of all forces within this ellipse, the one that dissipates the most
+power.
 """
 from __future__ import annotations
 
 from math import hypot
 from typing import List, NamedTuple, Optional, Tuple
 
-from ...geometry import ZERO3, Vec3, cross, dot, norm
+from ...geometry import Vec3, cross, dot, norm, scale
 from .contact_points import NORMAL
 from .contact_slip import (
     STIFF,
@@ -27,6 +28,7 @@ from .contact_slip import (
     limited,
     mean_slip,
     mean_velocity,
+    remaining_share,
     slips_along,
     yielding,
     yielding_along,
@@ -160,10 +162,17 @@ def _along_axes(axes: Tuple[Vec3, Vec3], slips: List[Tuple[float, float]], loads
         within = within or parts is wanted
         forces.append(_combined(axes, parts))
         total = total[0] + parts[0], total[1] + parts[1]
-    bias = ZERO3 if not within else _combined(axes, limited(
-        (holds[0] - _GROWS * ((slip[0] + slow[0] * total[0]) / soft[0] - spared[0]),
-         holds[1] - _GROWS * ((slip[1] + slow[1] * total[1]) / soft[1] - spared[1])),
-        mus, soft, carried))
+    if within:
+        bias = _combined(axes, limited(
+            (holds[0] - _GROWS * ((slip[0] + slow[0] * total[0]) / soft[0] - spared[0]),
+             holds[1] - _GROWS * ((slip[1] + slow[1] * total[1]) / soft[1] - spared[1])),
+            mus, soft, carried))
+    else:
+        bias = _combined(axes, holds)
+        bias = scale(bias, remaining_share(
+            (holds[0] / mus[0], holds[1] / mus[1], 0.0),
+            ((given[0] - slip[0] / soft[0]) / mus[0], (given[1] - slip[1] / soft[1]) / mus[1], 0.0),
+            carried))
     return LinkFriction(forces, bias, hypot(*slip),
                         max(soft[0] * mus[0], soft[1] * mus[1]) * carried)
 
