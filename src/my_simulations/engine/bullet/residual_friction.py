@@ -42,6 +42,7 @@ from .contact_points import (
     LinkKey,
     friction_force,
 )
+from .friction_across import FrictionAcross
 from .link_states import Motion, motion
 from .step_helper import StepHelper, next_multiple
 from .surface_coefficients import is_direction_dependent, of_link
@@ -75,6 +76,7 @@ class ResidualFriction(StepHelper):
 
     def __init__(self, rolls: Callable[[int], bool]) -> None:
         self._rolls = rolls
+        self._across = FrictionAcross()
         self._bodies: Dict[int, Body] = {}
         self._trees: Set[int] = set()
         self._moving: Set[int] = set()
@@ -84,7 +86,7 @@ class ResidualFriction(StepHelper):
         self._new: Set[int] = set()            # changed by a command since the last step
         self._mu: Dict[LinkKey, float] = {}    # of surfaces with one coefficient
         self.body_tables = (self._bodies, self._trees, self._moving, self._agenda, self._fast,
-                            self._each_step, self._new, self._mu)
+                            self._each_step, self._new, self._mu, self._across.forces)
 
     def add(self, body: Body) -> None:
         """Register a new body; only rigid ones that move and can have several contacts matter."""
@@ -118,6 +120,10 @@ class ResidualFriction(StepHelper):
         """Each step while bodies are corrected, otherwise the step of the next check."""
         return step if self._each_step else max(step, self._agenda.next)
 
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Apply the forces that compensate friction across the slip."""
+        self._across.apply()
+
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Correct bodies after the step that began at count `step`; periodically check others."""
         seen: Set[int] = set()
@@ -137,6 +143,8 @@ class ResidualFriction(StepHelper):
             wait = self._check_interval(uid, seen, dt, gravity)
             self._agenda.plan(uid, next_multiple(step + wait, _EVERY))
         self._new.clear()
+        for uid in self._across.forces.keys() - self._each_step.keys():
+            del self._across.forces[uid]   # it is not followed any more
 
     # -- selection -------------------------------------------------------------------------------
 
@@ -201,11 +209,17 @@ class ResidualFriction(StepHelper):
         if not contacts:
             return _FLIES
         neighbours = self._moving.intersection(map(_OTHER_BODY, contacts))
-        if len(neighbours) > 1 or neighbours and len(contacts) > _MOST_CONTACTS:
+        pushed = len(neighbours) == 1 and not neighbours.isdisjoint(self._trees) and (
+            self._across.update(uid, contacts, neighbours, dt))
+        if not pushed:
+            self._across.forces.pop(uid, None)
+        if len(neighbours) > 1:
             return _PILED
+        if neighbours and len(contacts) > _MOST_CONTACTS:
+            return _CORRECTED if pushed else _PILED
         residual = [each for each in contacts if each[LOAD] <= 0.0 and _is_residual(each)]
         if not residual or len(contacts) > _MOST_CONTACTS:
-            return _SLIDES
+            return _CORRECTED if pushed else _SLIDES
         # Bodies with joints use another solver, which leaves no such friction.
         if not neighbours.isdisjoint(seen | self._trees):
             residual = [each for each in residual if each[OTHER_BODY] not in neighbours]
@@ -213,14 +227,14 @@ class ResidualFriction(StepHelper):
             linear, angular = pybullet.getBaseVelocity(uid)
             if max(dot(linear, linear), dot(angular, angular)) <= _FAST * _FAST:
                 if not self._is_beyond_mu(uid, contacts):
-                    return _SLIDES
+                    return _CORRECTED if pushed else _SLIDES
                 if norm(linear) < _STUCK:
                     collision_groups.moving(self._bodies[uid].parts[0].link).set(uid, BASE)
                     return _CORRECTED
         for contact in residual:
             self._undo_friction(contact, dt)
         seen.add(uid)
-        return _CORRECTED if residual else _SLIDES
+        return _CORRECTED if residual or pushed else _SLIDES
 
     def _undo_friction(self, contact: ContactPoint, dt: float) -> None:
         """Undo the friction impulses of one contact; the first direction opposes the slip."""
