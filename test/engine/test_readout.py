@@ -5,9 +5,10 @@ import math
 from array import array
 
 import pybullet
-from conftest import Lab, arm, ball, box, ground, inertial_of_box
+from conftest import STILL, Lab, arm, ball, box, ground, inertial_of_box
 
 from my_simulations.description.model import JointAxis, Link, Model
+from my_simulations.engine.bullet.bodies import mark_asleep
 from my_simulations.engine.commands import Restart
 from my_simulations.engine.drive_commands import JointMotor, SetMotors
 from my_simulations.engine.ring import LINK_WIDTH, pose_and_twist
@@ -139,3 +140,27 @@ def test_what_a_record_of_the_world_has_read_is_still_a_change_for_snapshots(lab
     assert lab.backend.read_poses() and lab.backend.read()
     assert bytes(lab.backend.tables()[0]) == recorded
     assert not lab.backend.read()
+
+
+def test_a_body_that_came_to_rest_beside_a_slow_one_is_read_once_that_pushes_it(lab):
+    lab.load(ground(0.0))
+    for n in range(100):   # the turns of resting bodies that are read in any case come late
+        lab.load(box(f"other{n}", 0.1), (5.0 + 0.3 * (n % 10), 0.3 * (n // 10), 0.05))
+    lab.seconds(3.0)
+    slow = box("slow", 0.2, 5.0)
+    slow.allow_auto_disable = False
+    pusher = lab.load(slow, (0, 0, 0.1))
+    pushed = lab.load(box("pushed", 0.2), (0.248, 0, 0.1))
+    lab.push(pusher, (0.04, 0, 0))
+    row = lab.rows[pushed, "link"]
+    uid = lab.backend._rows[row][0].uid
+    lab.steps(1)   # it finds the neighbours of the slow one, of which none rests
+    pybullet.resetBaseVelocity(uid, *STILL)
+    mark_asleep(uid)
+    lab.steps(1)
+    lab.steps(1)
+    assert lab.twist(pushed) == STILL
+    while lab.pose(pusher).position[0] < 0.055:
+        lab.steps(1)
+        assert lab.pose(pushed).position == pybullet.getBasePositionAndOrientation(uid)[0]
+    assert lab.pose(pushed).position[0] > 0.25

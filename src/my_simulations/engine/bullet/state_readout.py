@@ -29,6 +29,7 @@ _ROW_BYTES = ROW.size
 _pose_of = pybullet.getBasePositionAndOrientation
 _velocity_of = pybullet.getBaseVelocity
 _MARGIN = 0.05     # m: motion of a body until its neighbours are searched again
+_REACH = _MARGIN + 0.02   # m: how far from a body its neighbours are searched
 _READ_ANYWAY = 8   # resting bodies read in each read-out, even without a neighbour
 
 
@@ -242,13 +243,23 @@ class StateReadout(BodyObserver):
             self._neighbours.pop(body.uid, None)
             if body.moves:
                 self._resting[body.uid] = body
+                self._add_neighbour(body)
+
+    def _add_neighbour(self, body: Body) -> None:
+        """Add a body that came to rest to the neighbours of the moving bodies in reach."""
+        assert body.last_position is not None
+        x, y, z = body.last_position
+        for uid, (at, found) in self._neighbours.items():
+            reach = self._awake[uid].radius + body.radius + _REACH
+            if abs(x - at[0]) < reach and abs(y - at[1]) < reach and abs(z - at[2]) < reach:
+                found.add(body.uid)
 
     def _woken_by(self, uid: int, at: Vec3, radius: float) -> List[Body]:
         """Mark resting bodies near a moving one as awake if they move. Returns these."""
         neighbours = self._neighbours.get(uid)
         if neighbours is None or max(abs(at[0] - neighbours[0][0]), abs(at[1] - neighbours[0][1]),
                                      abs(at[2] - neighbours[0][2])) > _MARGIN:
-            reach = radius + _MARGIN + 0.02
+            reach = radius + _REACH
             neighbours = (at, set(bodies_in([c - reach for c in at], [c + reach for c in at],
                                             self._resting.__contains__)))
             self._neighbours[uid] = neighbours
