@@ -35,11 +35,14 @@ class FrictionAcross:
     """Applies forces to rigid bodies that robots push over static bodies.
 
     Attributes:
-        forces: by body: the force, N, the torque, N m, and the point at which they act.
+        forces: by body: the force, N, the torque, N m, and the point at which they act in the next
+            step, m.
+        last: the same in the last step.
     """
 
     def __init__(self) -> None:
         self.forces: Dict[int, Tuple[Vec3, Vec3, Vec3]] = {}
+        self.last: Dict[int, Tuple[Vec3, Vec3, Vec3]] = {}
 
     def update(self, uid: int, contacts: Sequence[ContactPoint], moving: AbstractSet[int],
                dt: float) -> bool:
@@ -60,14 +63,17 @@ class FrictionAcross:
                 slides = True
         if slides:
             share = min(1.0, dt / _FOLLOWS)
-            last = self.forces.get(uid, (ZERO3, ZERO3))
+            last = self.last.get(uid, (ZERO3, ZERO3))
             self.forces[uid] = (add(scale(last[0], 1.0 - share), scale(force, share)),
                                 add(scale(last[1], 1.0 - share), scale(torque, share)),
                                 ours.position)
         return slides
 
     def apply(self) -> None:
-        """Apply the forces to the bodies in the next step."""
+        """Apply the forces in the next step; bodies that are not updated after it lose theirs."""
         for uid, (force, torque, at) in self.forces.items():
             pybullet.applyExternalForce(uid, BASE, force, at, pybullet.WORLD_FRAME)
             pybullet.applyExternalTorque(uid, BASE, torque, pybullet.WORLD_FRAME)
+        self.last.clear()
+        self.last.update(self.forces)
+        self.forces.clear()

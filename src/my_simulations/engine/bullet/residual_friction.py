@@ -72,7 +72,7 @@ class ResidualFriction(StepHelper):
         rolls: returns whether a rigid body is a cylinder that rolls on its side.
     """
 
-    events = COMMANDED
+    events = COMMANDED | {BodyEvent.STATE_SET}
 
     def __init__(self, rolls: Callable[[int], bool]) -> None:
         self._rolls = rolls
@@ -86,7 +86,8 @@ class ResidualFriction(StepHelper):
         self._new: Set[int] = set()            # changed by a command since the last step
         self._mu: Dict[LinkKey, float] = {}    # of surfaces with one coefficient
         self.body_tables = (self._bodies, self._trees, self._moving, self._agenda, self._fast,
-                            self._each_step, self._new, self._mu, self._across.forces)
+                            self._each_step, self._new, self._mu, self._across.forces,
+                            self._across.last)
 
     def add(self, body: Body) -> None:
         """Register a new body; only rigid ones that move and can have several contacts matter."""
@@ -111,18 +112,23 @@ class ResidualFriction(StepHelper):
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Check a body in each step after a command changed its pose or velocity."""
         uid = body.uid
-        if uid in self._bodies and not body.is_sphere:
+        if event is BodyEvent.STATE_SET:
+            self._across.forces.pop(uid, None)
+        elif uid in self._bodies and not body.is_sphere:
             self._fast[uid], self._each_step[uid] = None, 1
             self._new.add(uid)
             self._agenda.plan(uid, 0)
 
     def due(self, step: int) -> int:
         """Each step while bodies are corrected, otherwise the step of the next check."""
-        return step if self._each_step else max(step, self._agenda.next)
+        if self._each_step or self._across.forces:
+            return step
+        return max(step, self._agenda.next)
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Apply the forces that compensate friction across the slip."""
-        self._across.apply()
+        if self._across.forces or self._across.last:
+            self._across.apply()
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Correct bodies after the step that began at count `step`; periodically check others."""
@@ -143,8 +149,6 @@ class ResidualFriction(StepHelper):
             wait = self._check_interval(uid, seen, dt, gravity)
             self._agenda.plan(uid, next_multiple(step + wait, _EVERY))
         self._new.clear()
-        for uid in self._across.forces.keys() - self._each_step.keys():
-            del self._across.forces[uid]   # it is not followed any more
 
     # -- selection -------------------------------------------------------------------------------
 
@@ -209,12 +213,10 @@ class ResidualFriction(StepHelper):
         if not contacts:
             return _FLIES
         neighbours = self._moving.intersection(map(_OTHER_BODY, contacts))
-        pushed = len(neighbours) == 1 and not neighbours.isdisjoint(self._trees) and (
-            self._across.update(uid, contacts, neighbours, dt))
-        if not pushed:
-            self._across.forces.pop(uid, None)
         if len(neighbours) > 1:
             return _PILED
+        pushed = bool(neighbours) and not neighbours.isdisjoint(self._trees) and (
+            self._across.update(uid, contacts, neighbours, dt))
         if neighbours and len(contacts) > _MOST_CONTACTS:
             return _CORRECTED if pushed else _PILED
         residual = [each for each in contacts if each[LOAD] <= 0.0 and _is_residual(each)]
