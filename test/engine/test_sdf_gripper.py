@@ -53,7 +53,7 @@ class Hand:
         self.seconds(seconds)
 
     def lift(self, height, seconds=1.0):
-        self.world.move_joint("hand::lift", height)
+        self.world.move_joint("hand::lift", height, rate=0.4)
         self.seconds(seconds)
 
     @property
@@ -104,6 +104,7 @@ def test_without_a_gripper_the_cube_slips_from_the_fingers(open_hand):
     hand = open_hand(0.001, HAND.replace(GRIPPER, ""))
     hand.close()
     hand.lift(0.2)
+    assert hand.height == pytest.approx(0.225, abs=1e-3)
     hand.world.apply_wrench("cube::link", force=[0, 0, -60], duration=0.3)
     hand.seconds(0.4)
     assert hand.height < 0.1
