@@ -11,6 +11,7 @@ import test_elastic_bounces
 import test_gripping
 import test_landing
 import test_mesh_floors
+import test_pushed_boxes
 import test_rolling
 import test_settling
 import test_skid
@@ -89,6 +90,8 @@ CASES: List[Case] = [
     _case(test_wheels.test_wide_wheels_stand_on_both_edges, True),
     _case(test_wheels.test_a_base_on_two_wheels_keeps_its_heading_as_it_starts_and_stops, True,
           floor="plane", roll=-1.57, mu=1.0, period=10),
+    _case(test_pushed_boxes.test_a_base_that_pushes_a_box_keeps_its_heading, mass=0.3, mu=0.5,
+          speed=0.2, step=None, bar=0.5, heading=0.5),
     _case(test_sliding.test_a_box_slides_as_far_in_every_direction, True, size=test_sliding.FLAT,
           floor="box"),
     _case(test_sliding.test_a_box_that_lands_flat_does_not_tilt, height=0.5, largest_step=0.001),
