@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import re
 
 import pytest
 import trimesh
@@ -42,6 +43,18 @@ def test_the_window_with_a_selected_model(editor, scheme):
 def test_the_tabs_of_the_left_panel(editor, tab):
     editor.page.get_by_role("tab", name=tab).click()
     check(editor)
+
+
+def test_the_insert_tab_with_an_added_path(editor, tmp_path):
+    editor.page.get_by_role("tab", name="Insert").click()
+    editor.button("Add Path").click()
+    editor.page.get_by_role("dialog").get_by_label("Model directory").fill(str(tmp_path))
+    editor.page.keyboard.press("Enter")
+    remove = editor.page.get_by_role("button", name=re.compile(f"^Remove .*{tmp_path.name}$"))
+    remove.wait_for()
+    check(editor)
+    remove.click()
+    remove.wait_for(state="detached")
 
 
 @pytest.mark.parametrize("name", DIALOGS)

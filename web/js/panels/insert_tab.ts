@@ -114,8 +114,6 @@ export class InsertTab {
         icon('right', 13),
         h('span', {text: location.title}),
         h('span', {class: 'tag', text: String(location.models.length)}),
-        location.kind === 'added' &&
-          closeButton(`Remove ${location.title}`, (event) => this.#removePath(event, location)),
       ),
       body,
     );
@@ -124,7 +122,10 @@ export class InsertTab {
       else this.#closed.add(location.id);
       remembered.set('closed-locations', [...this.#closed]);
     });
-    return details;
+    if (location.kind !== 'added') return details;
+    // Beside the summary: what is inside of it is no button for screen readers.
+    return h('div', {class: 'removable'}, details,
+      closeButton(`Remove ${location.title}`, () => void this.#removePath(location)));
   }
 
   #model(model: LibraryModel) {
@@ -242,8 +243,7 @@ export class InsertTab {
       this.#take((await this.page.request('library_add', {path})).locations));
   }
 
-  async #removePath(event: Event, location: Location) {
-    event.preventDefault();
+  async #removePath(location: Location) {
     try {
       this.#take((await this.page.request('library_remove', {path: location.path})).locations);
     } catch (fault) {
