@@ -17,7 +17,6 @@ sys.path.insert(0, str(REPOSITORY / "tools" / "generate"))
 from supported_table import PAGE as SUPPORT
 from supported_table import with_table
 
-from my_simulations.description.plugin import GRIPPER_LIBRARY
 from my_simulations.plugins.registry import BUILT_IN, PROVIDED
 
 README, MAINTAINERS = REPOSITORY / "README.md", REPOSITORY / "doc" / "dev" / "README.md"
@@ -93,7 +92,7 @@ def test_the_robots_page_lists_every_library_of_the_registry_and_no_other():
     page = text_of(REPOSITORY / "doc" / "robots.md")
     rows = {name for row in re.findall(r"^\| (`lib[^|]*) \|", page, re.MULTILINE)
             for name in re.findall(r"`(lib\w+\.so)`", row)}
-    assert rows == set(BUILT_IN) - {GRIPPER_LIBRARY}   # that of <gripper>, which no file names
+    assert rows == set(BUILT_IN)
     assert [name for name in PROVIDED if f"`{name}`" not in page] == []
 
 
