@@ -10,7 +10,7 @@ import pybullet
 
 from ...geometry import Vec3
 from .joint_constraints import Constraint, ConstraintBook
-from .step_helper import FAR, StepHelper
+from .step_helper import FAR, StepHelper, next_multiple
 from .world_parameters import USUAL_ACCURACY, Accuracy, WorldParameters
 
 _CHECK_STEPS = 10     # between two checks
@@ -34,7 +34,7 @@ class GearAccuracy(StepHelper):
         """Every `_CHECK_STEPS`, while there are gears; once after the last one was removed."""
         if not self._book.gears and self._accuracy is USUAL_ACCURACY:
             return FAR
-        return -(-step // _CHECK_STEPS) * _CHECK_STEPS
+        return next_multiple(step, _CHECK_STEPS)
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Request the accuracy of the next steps."""
