@@ -142,10 +142,15 @@ class Observation:
         """Hand a step over to the plugin."""
         idle = self._was_idle and self._has_left_out_steps(time_step)
         self._was_idle, self._last = False, time_step
-        if idle and self._resume is not None:
-            self._resume()
-        else:
-            self._call()
+        # Steps without subscribers are handed over late: perhaps when there are some.
+        self.owner.is_silent = self.rule is not None and not self.rule.urgent
+        try:
+            if idle and self._resume is not None:
+                self._resume()
+            else:
+                self._call()
+        finally:
+            self.owner.is_silent = False
 
     def _has_left_out_steps(self, time_step: SimTimeStep) -> bool:
         last = self._last

@@ -22,14 +22,16 @@ class PluginTopic:
 
     @property
     def wanted(self) -> bool:
-        return self._topic.wanted
+        return not self._owner.is_silent and self._topic.wanted
 
     def publish(self, message: Any) -> None:
-        self._owner.outbox.append((self._topic, message))
+        if not self._owner.is_silent:
+            self._owner.outbox.append((self._topic, message))
 
     def publish_later(self, make: Callable[[], Any]) -> None:
         """Publish a message that another thread makes."""
-        self._owner.outbox.append((self._topic, PendingMessage(make, self._owner.unsent())))
+        if not self._owner.is_silent:
+            self._owner.outbox.append((self._topic, PendingMessage(make, self._owner.unsent())))
 
     def close(self) -> None:
         """Send the waiting messages, then remove the topic from the ROS graph."""
@@ -71,6 +73,7 @@ class GraphUser:
     Attributes:
         outbox, transforms: what the plugin has published since they were last taken.
         inbox: functions to be called for what has come for it.
+        is_silent: what it publishes is discarded: it observes a step before the first subscriber.
 
     Args:
         graph: ROS.
@@ -83,6 +86,7 @@ class GraphUser:
         self.inbox: Deque[Callable[[], None]] = deque()
         self.outbox: List[Tuple[Topic, Any]] = []
         self.transforms: List[Tuple[int, TransformOf]] = []
+        self.is_silent = False
         self._opened: List[GraphHandle] = []
         self._uses: Dict[int, Tuple[str, str, bool]] = {}
         self._namespace = ""
@@ -220,5 +224,7 @@ class GraphUser:
         self._graph.offer_transforms(self._changed)
 
     def transform(self, parent: str, child: str, pose: Pose) -> None:
+        if self.is_silent:
+            return
         self.transforms.append(
             (self.now_ns, (str(parent), str(child), check_pose(pose, "a transform"))))
