@@ -113,6 +113,8 @@ class MotorRamps:
     def _set_target(self, motor: JointMotor, ramp: RateRamp, present: float, step: int,
                     clock: Clock) -> None:
         group = self._groups.get(ramp.group)
+        if group is None or group.ramp != ramp or motor.row not in group.targets:
+            self._end([motor.row])   # in another group
         if group is None or group.ramp != ramp:
             group = self._groups[ramp.group] = _Group(ramp)
         group.targets[motor.row] = motor

@@ -93,6 +93,16 @@ def test_a_motor_that_is_set_without_a_ramp_has_its_rate_at_once_and_stays(base)
     assert base.rates == pytest.approx({LEFT: 0.04, RIGHT: 0.04})
 
 
+def test_the_last_ramp_of_a_motor_counts(base):
+    base.drive(1.0, 1.0)
+    base.advance(40)
+    base.drive(-1.0, -1.0, ramp=RateRamp(1.0, 0.1, 25.0, "another drive"))
+    base.advance(20)
+    assert base.rates == pytest.approx({LEFT: 0.08, RIGHT: 0.08})
+    base.advance(20)
+    assert base.rates == pytest.approx({LEFT: 0.04, RIGHT: 0.04})
+
+
 def test_a_ramp_begins_at_the_rate_of_the_motor_whatever_the_joint_does(base):
     base.drive(0.2, 0.2, ramp=None)
     base.rates = {LEFT: 0.1, RIGHT: 0.3}
