@@ -1,8 +1,8 @@
 """Motors whose rates approach their targets with a limited acceleration, at the steps of a rate.
 
 The law is that of `wheelAcceleration` in gazebo_plugins' differential drive. At each step of the
-rate, the commanded rate of each motor changes by target minus measured rate, but by no more than
-the acceleration allows, and not beyond the target. As soon as one joint of the group is near its
+rate, the commanded rate of each motor changes by target minus measured rate, at most by what the
+acceleration allows, and not beyond the target. As soon as one joint of the group is near its
 target, all motors get their targets.
 """
 from __future__ import annotations
