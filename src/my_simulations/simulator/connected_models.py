@@ -57,8 +57,7 @@ class ConnectedModels:
     def nested(self, name: str) -> Optional[NestedModel]:
         """The nested model of a scoped or plain name; None for another or a top-level model."""
         with self._session.registry_lock:
-            registry = self._session.registry
-            found = None if name in registry else registry.nested_model(name)
+            found = self._session.registry.nested_model(name)
         return None if found is None else found[1]
 
     def set_extra(self, name: str, extra: List[str]) -> None:

@@ -199,7 +199,10 @@ class Registry:
         return found
 
     def nested_model(self, name: str) -> Optional[Tuple[Entity, NestedModel]]:
-        """A nested model by scoped name or by plain name (the first in the world), else None."""
+        """A nested model by scoped or plain name (the first in the world).
+
+        None for another name, and for that of a top-level model.
+        """
         outermost, rest = split_scoped(name, self._entities.__contains__)
         if outermost:
             entity = self._entities[outermost]

@@ -62,7 +62,7 @@ class States:
         session = self._session
         session.await_posted()
         with session.registry_lock:
-            nested = None if name in session.registry else session.registry.nested_model(name)
+            nested = session.registry.nested_model(name)
             if nested is not None:
                 anchor, snapshot = session.registry.frame(frame), session.snapshot()
                 return relative_state(nested_frame(*nested).state(snapshot), anchor, snapshot)
@@ -159,7 +159,7 @@ class States:
         session = self._session
         pose = check_state(pose, twist)
         with session.registry_lock:
-            nested = None if name in session.registry else session.registry.nested_model(name)
+            nested = session.registry.nested_model(name)
             entity = session.registry.model(name) if nested is None else nested[0]
         if nested is not None:
             self._set_nested_state(name, *nested, pose, twist, frame)
