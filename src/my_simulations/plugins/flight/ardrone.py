@@ -11,10 +11,12 @@ from __future__ import annotations
 import math
 from typing import Any, List, Optional
 
-from ...geometry import Vec3, rpy_from_quat, scale, subtract
+from ...geometry import Vec3, rpy_from_quat, scale
+from ...sensing.sensor_models import acceleration_between
 from ..base import Plugin
 from ..context import Context, Handle, PluginError, Publication
 from ..frames import stamp_message
+from ..time_out import Stopwatch
 from .flight_states import FlightState, FlightStates
 from .quadrotor_simple_controller import to_heading
 
@@ -72,7 +74,7 @@ class ArdroneStateController(Plugin):
 
     def _begin_motion(self) -> None:
         """Measure accelerations from the present time and velocity on."""
-        self._velocity, self._velocity_ns = self._link.twist.linear, self.context.now_ns
+        self._velocity, self._stopwatch = self._link.twist.linear, Stopwatch(self.context)
 
     def _publish(self) -> None:
         context, pose, velocity = self.context, self._link.pose, self._link.twist.linear
@@ -92,10 +94,8 @@ class ArdroneStateController(Plugin):
 
     def _acceleration(self, velocity: Vec3) -> Vec3:
         """The mean acceleration since the last call, m/s^2."""
-        elapsed = (self.context.now_ns - self._velocity_ns) * 1e-9
-        gained = subtract(velocity, self._velocity)
-        self._begin_motion()
-        return scale(gained, 1.0 / elapsed) if elapsed > 0.0 else (0.0, 0.0, 0.0)
+        before, self._velocity = self._velocity, velocity
+        return acceleration_between(before, velocity, self._stopwatch.lap())
 
 
 class _CameraSwitch:

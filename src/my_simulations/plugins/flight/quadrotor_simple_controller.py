@@ -63,7 +63,6 @@ class QuadrotorSimpleController(Plugin):
         self._wrenches = context.publish(self._topic("wrench_topic", p.text(
             "wrenchTopic", "wrench_out")), "geometry_msgs/Wrench", 10)
         self._timer, self._stopwatch = CallSlot(), Stopwatch(context)
-        self._strength = 1.0
         self._begin()
         drone = state_controller(context)
         self._states: Optional[FlightStates] = None
@@ -107,10 +106,13 @@ class QuadrotorSimpleController(Plugin):
         if self._auto_engages and not self._timer.is_active and self._command[2] > _TAKE_OFF:
             self._engage()
 
+    @property
+    def _strength(self) -> float:
+        """Factor of thrust and torque."""
+        return 1.0 if self._states is None else STRENGTHS[self._states.state]
+
     def _follow_state(self) -> None:
         """Start or stop the motors of an AR.Drone."""
-        assert self._states is not None
-        self._strength = STRENGTHS[self._states.state]
         if self._strength > 0.0:
             self._engage()
         else:
