@@ -135,7 +135,7 @@ SURFACE_CHILDREN: Mapping[str, Entry] = {
         "collide_without_contact": Value("collide_without_contact", BOOL),
         "collide_bitmask": Value("collide_bitmask", INT),
         **kept("bullet", "collide_without_contact_bitmask", "category_bitmask", "poissons_ratio",
-                "elastic_modulus"),
+               "elastic_modulus"),
     }),
     **kept("soft_contact"),
 }
@@ -189,7 +189,7 @@ LINK = Table("link", Link, {
     **kept("frame", "light", "must_be_base_link"), "enable_wind": Kept(use=PLUGINS),
     "sensor": Part(use=PLUGINS, kept=True),
     **kept("projector", "audio_source", "audio_sink", "battery", "particle_emitter",
-                      "plugin", reported=True),
+           "plugin", reported=True),
 }, known_attributes=("name",))
 
 _AXIS_CHILDREN: Mapping[str, Entry] = {
@@ -262,7 +262,7 @@ PHYSICS = Table("physics", Physics, {
             "sor": Value("sor", FLOAT, use=KEPT),
             "friction_model": Value("friction_model", TEXT),
             **kept("type", "min_step_size", "island_threads", "thread_position_correction",
-                    "use_dynamic_moi_rescaling"),
+                   "use_dynamic_moi_rescaling"),
         }),
         "constraints": Group(values_named(FLOAT, "cfm", "erp", "contact_max_correcting_vel",
                                           "contact_surface_layer", use=KEPT)),

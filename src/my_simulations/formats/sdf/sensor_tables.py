@@ -95,7 +95,7 @@ CAMERA = _table("camera", Camera, {
         **kept("intrinsics", "projection"),
     }, part="lens"),
     **kept("save", "visibility_mask", "frame", "segmentation_type", "box_type",
-            "optical_frame_id", "camera_info_topic", "trigger_topic", "triggered"),
+           "optical_frame_id", "camera_info_topic", "trigger_topic", "triggered"),
 }, attributes={"name": Value("name", TEXT)})
 
 CONTACT = _table("contact", ContactSensor, {
@@ -171,5 +171,5 @@ SENSOR = _table("sensor", Sensor, {
     "camera": Part(), "plugin": Part(),
     **{tag: Part(use=table.use) for tag, table in BLOCKS.items()},
     **kept("frame", "rfid", "rfidtag", "enable_metrics", "force_torque_sensor", "gz_frame_id",
-            "ignition_frame_id"),
+           "ignition_frame_id"),
 }, attributes={"type": Value("type", TEXT)}, known_attributes=("name",))

@@ -11,9 +11,7 @@ from typing import Callable, Dict, List, Optional, Tuple
 
 from ...description.model import Joint
 from ...description.sensor import ForceTorque, Sensor
-from ...sensing.sensor_models import (
-    measure_wrench,
-)
+from ...sensing.sensor_models import measure_wrench
 from ..context import PluginError, Publication
 from ..imu_meter import ImuMeter
 from ..standard_messages import imu_message, wrench_message
