@@ -123,7 +123,7 @@ export class InsertTab {
       remembered.set('closed-locations', [...this.#closed]);
     });
     if (location.kind !== 'added') return details;
-    // Beside the summary: what is inside of it is no button for screen readers.
+    // Beside the summary: screen readers announce no button inside of it.
     return h('div', {class: 'removable'}, details,
       closeButton(`Remove ${location.title}`, () => void this.#removePath(location)));
   }

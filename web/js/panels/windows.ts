@@ -108,7 +108,7 @@ export class Windows {
       previousRegion: () => goToRegion(-1),
     };
     const run = windows[detail.name];
-    // A key that repeats must not stack the same window; what is dropped while an import goes on must not be lost.
+    // A key that repeats must not stack the same window. Files that are dropped during an import must not be lost.
     if (!run || (this.#open.has(detail.name) && !detail.entries)) return;
     this.#open.add(detail.name);
     Promise.resolve(run())
